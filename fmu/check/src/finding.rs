@@ -1,6 +1,6 @@
 //! Collection of findings.
 
-use super::rules::{CheckRule, Severity};
+use super::rules::{Rule, Severity};
 use octant_fmu_host::description::Standard;
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
@@ -12,9 +12,9 @@ const KEPT: usize = 25;
 
 /// A violation of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RuleFinding {
+pub struct Finding {
     /// Rule that is broken.
-    pub rule: &'static CheckRule,
+    pub rule: &'static Rule,
     /// File inside the FMU; empty: the FMU itself.
     pub entry: String,
     /// Line, if the finding is about one.
@@ -29,7 +29,7 @@ pub struct RuleFinding {
     pub clause: String,
 }
 
-impl Serialize for RuleFinding {
+impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut state = serializer.serialize_struct("Finding", 8)?;
         state.serialize_field("severity", &self.rule.severity)?;
@@ -55,7 +55,7 @@ pub(super) struct Place<'a> {
 /// Findings so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Findings {
-    kept: Vec<RuleFinding>,
+    kept: Vec<Finding>,
     counts: BTreeMap<&'static str, usize>,
     standard: Option<Standard>,
 }
@@ -69,7 +69,7 @@ impl Findings {
     /// Adds a violation of a rule.
     pub(super) fn add(
         &mut self,
-        rule: &'static CheckRule,
+        rule: &'static Rule,
         place: Place<'_>,
         found: impl Into<String>,
         expected: impl Into<String>,
@@ -79,7 +79,7 @@ impl Findings {
         if *count > KEPT {
             return;
         }
-        self.kept.push(RuleFinding {
+        self.kept.push(Finding {
             rule,
             entry: place.entry.to_owned(),
             line: place.line,
@@ -93,7 +93,7 @@ impl Findings {
 
     /// Returns all findings: worst first, each severity in the order of the file; and the number of
     /// findings of each rule that weren't kept.
-    pub(super) fn finish(mut self) -> (Vec<RuleFinding>, BTreeMap<&'static str, usize>) {
+    pub(super) fn finish(mut self) -> (Vec<Finding>, BTreeMap<&'static str, usize>) {
         for finding in &mut self.kept {
             finding.clause = clause(finding.rule, self.standard, &finding.subject);
         }
@@ -115,7 +115,7 @@ impl Findings {
 
 /// Clause of a rule in a standard, or in both while it isn't known which the FMU follows. `subject` is
 /// that of the finding.
-fn clause(rule: &CheckRule, standard: Option<Standard>, subject: &str) -> String {
+fn clause(rule: &Rule, standard: Option<Standard>, subject: &str) -> String {
     let of = |name: &str, section: &'static str| match section {
         "Octant" | "" => "Octant".into(),
         // A separate standard.

@@ -48,7 +48,7 @@ mod variables;
 pub use head::is_c_identifier;
 
 use binaries::LibraryProperties;
-use finding::{Findings, Place, RuleFinding};
+use finding::{Finding, Findings, Place};
 use model::Model;
 use octant_fmu_host::archive::{Archive, ArchiveError, ArchiveLimits};
 use octant_fmu_host::description::schema::{self, Breaks, ElementRule, Violation};
@@ -66,7 +66,7 @@ const DESCRIPTION: &str = "modelDescription.xml";
 
 /// Result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CheckReport {
+pub struct Report {
     /// File name of the FMU.
     pub file: String,
     /// `fmiVersion`, if it can be read.
@@ -78,12 +78,12 @@ pub struct CheckReport {
     /// Properties of the libraries.
     pub binaries: Vec<LibraryProperties>,
     /// Findings, worst first.
-    pub findings: Vec<RuleFinding>,
+    pub findings: Vec<Finding>,
     /// Number of further findings of each rule that has too many.
     pub more: BTreeMap<&'static str, usize>,
 }
 
-impl CheckReport {
+impl Report {
     /// Number of findings of a severity.
     #[must_use]
     pub fn count(&self, severity: Severity) -> usize {
@@ -121,10 +121,10 @@ impl Checked {
 
     /// Makes the report of all findings.
     #[must_use]
-    pub fn report(self) -> CheckReport {
+    pub fn report(self) -> Report {
         let (findings, more) = self.findings.finish();
         let description = self.description.as_ref();
-        CheckReport {
+        Report {
             file: self.file,
             fmi_version: description.map(|description| description.fmi_version.clone()),
             model_name: description.map(|description| description.model_name.clone()),
@@ -171,7 +171,7 @@ pub fn check_archive(mut archive: Archive) -> Result<Checked, ArchiveError> {
 
 /// Checks a description alone.
 #[must_use]
-pub fn check_description(text: &str) -> (Option<Description>, Vec<RuleFinding>) {
+pub fn check_description(text: &str) -> (Option<Description>, Vec<Finding>) {
     let mut findings = Findings::default();
     let description = with_description(text, &mut findings, |_, _| {});
     (description, findings.finish().0)
@@ -332,7 +332,7 @@ fn others(model: &Model<'_, '_>, archive: &mut Archive, findings: &mut Findings)
 /// Reads another XML file, checks it by its schema, and continues with its root; `None`: the file
 /// is missing.
 fn xml(
-    (entry, node, rule): (&str, &'static ElementRule, &'static rules::CheckRule),
+    (entry, node, rule): (&str, &'static ElementRule, &'static rules::Rule),
     archive: &mut Archive,
     findings: &mut Findings,
     then: impl FnOnce(Element<'_, '_>, &Archive, &mut Findings),

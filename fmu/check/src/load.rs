@@ -6,7 +6,7 @@
 use super::Checked;
 use super::finding::Place;
 use super::rules::{
-    CheckRule, LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL,
+    LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL, Rule,
 };
 use octant_fmu_host::description::{Causality, Description, Initial, Variable, VariableType};
 use octant_fmu_host::instance::open::{FmuOpenError, open_archive};
@@ -52,13 +52,13 @@ pub fn load(checked: &mut Checked, options: &OpenOptions, step: bool) {
 
 /// A failed call, and the rule that it breaks.
 struct Failure {
-    rule: &'static CheckRule,
+    rule: &'static Rule,
     found: String,
 }
 
 impl Failure {
     /// Assigns an error to a rule: `rule` is that of the call.
-    fn of(error: &InstanceError, rule: &'static CheckRule) -> Self {
+    fn of(error: &InstanceError, rule: &'static Rule) -> Self {
         let rule = match error {
             InstanceError::Process { .. } => &LOAD_SURVIVES,
             InstanceError::Load { .. } => &LOAD_OPENS,

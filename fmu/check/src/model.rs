@@ -1,7 +1,7 @@
 //! A description together with the text of its file: rules need both.
 
 use super::finding::{Findings, Place};
-use super::rules::CheckRule;
+use super::rules::Rule;
 use octant_fmu_host::description::xml::Element;
 use octant_fmu_host::description::{
     Causality, Description, Standard, UnitDefinition, Variable, VariableType,
@@ -116,7 +116,7 @@ impl<'a, 't: 'a> Model<'a, 't> {
     pub(super) fn broken(
         &self,
         findings: &mut Findings,
-        rule: &'static CheckRule,
+        rule: &'static Rule,
         declared: &Declared<'_, '_>,
         found: impl Into<String>,
         expected: impl Into<String>,

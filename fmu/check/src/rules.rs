@@ -28,7 +28,7 @@ impl Severity {
 
 /// A rule.
 #[derive(Debug, PartialEq, Eq)]
-pub struct CheckRule {
+pub struct Rule {
     /// Name of the rule: `variable.start`.
     pub id: &'static str,
     /// Severity of a violation.
@@ -45,7 +45,7 @@ macro_rules! rules {
     ($($name:ident $id:literal $severity:ident $fmi2:literal $fmi3:literal $says:literal;)*) => {
         $(
             #[doc = $says]
-            pub static $name: CheckRule = CheckRule {
+            pub static $name: Rule = Rule {
                 id: $id,
                 severity: Severity::$severity,
                 says: $says,
@@ -54,7 +54,7 @@ macro_rules! rules {
             };
         )*
         /// All rules, in the order of the page that lists them.
-        pub static RULES: &[&CheckRule] = &[$(&$name),*];
+        pub static RULES: &[&Rule] = &[$(&$name),*];
     };
 }
 

@@ -1,13 +1,13 @@
 //! Findings as text.
 
-use super::CheckReport;
-use super::finding::RuleFinding;
+use super::Report;
+use super::finding::Finding;
 use super::rules::{RULES, Severity};
 use std::fmt::Write;
 
 /// Formats a report for users: the FMU, the findings, and their numbers.
 #[must_use]
-pub fn text(report: &CheckReport) -> String {
+pub fn text(report: &Report) -> String {
     let mut text = String::new();
     head(report, &mut text);
     for finding in &report.findings {
@@ -28,7 +28,7 @@ pub fn text(report: &CheckReport) -> String {
     text
 }
 
-fn head(report: &CheckReport, text: &mut String) {
+fn head(report: &Report, text: &mut String) {
     let _ = write!(text, "{}", report.file);
     if let Some(version) = &report.fmi_version {
         let name = report.model_name.as_deref().unwrap_or_default();
@@ -51,7 +51,7 @@ fn head(report: &CheckReport, text: &mut String) {
     }
 }
 
-fn one(finding: &RuleFinding, text: &mut String) {
+fn one(finding: &Finding, text: &mut String) {
     let mut place = finding.entry.clone();
     if let Some(line) = finding.line {
         let _ = write!(place, ":{line}");

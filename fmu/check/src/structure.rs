@@ -3,7 +3,7 @@
 use super::finding::Findings;
 use super::model::Model;
 use super::rules::{
-    CheckRule, STRUCTURE_CLOCKED, STRUCTURE_DEPENDENCIES, STRUCTURE_DEPENDENCY_ORDER,
+    Rule, STRUCTURE_CLOCKED, STRUCTURE_DEPENDENCIES, STRUCTURE_DEPENDENCY_ORDER,
     STRUCTURE_DERIVATIVES, STRUCTURE_DUPLICATE, STRUCTURE_INDICATORS, STRUCTURE_INITIAL,
     STRUCTURE_INITIAL_ORDER, STRUCTURE_KINDS, STRUCTURE_OUTPUT_ORDER, STRUCTURE_OUTPUTS,
     STRUCTURE_REFERENCE, STRUCTURE_STATE,
@@ -147,7 +147,7 @@ fn index(model: &Model<'_, '_>, number: u32) -> Option<usize> {
 fn compare(
     model: &Model<'_, '_>,
     root: Element<'_, '_>,
-    rule: &'static CheckRule,
+    rule: &'static Rule,
     list: List,
     [found, expected, allowed]: [&BTreeSet<usize>; 3],
     findings: &mut Findings,

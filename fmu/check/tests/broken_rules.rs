@@ -3,9 +3,9 @@
 use cases::cases;
 use dll::dll;
 use octant_fmu_check::binaries::LibraryProperties;
-use octant_fmu_check::finding::RuleFinding;
+use octant_fmu_check::finding::Finding;
 use octant_fmu_check::rules::{self, RULES, Severity};
-use octant_fmu_check::{CheckReport, check_archive, check_description, show};
+use octant_fmu_check::{Report, check_archive, check_description, show};
 use octant_fmu_host::archive::{Archive, ArchiveLimits};
 use std::collections::BTreeSet;
 use std::io::{Cursor, Write};
@@ -30,13 +30,13 @@ fn edited(text: &str, edits: &[Edit<'_>]) -> String {
     text
 }
 
-fn ids(findings: &[RuleFinding]) -> Vec<&'static str> {
+fn ids(findings: &[Finding]) -> Vec<&'static str> {
     let ids: BTreeSet<&str> = findings.iter().map(|finding| finding.rule.id).collect();
     ids.into_iter().collect()
 }
 
 /// Rules of the description that an edit breaks.
-fn broken(good: &str, edits: &[Edit<'_>]) -> (Vec<&'static str>, Vec<RuleFinding>) {
+fn broken(good: &str, edits: &[Edit<'_>]) -> (Vec<&'static str>, Vec<Finding>) {
     let (_, findings) = check_description(&edited(good, edits));
     (ids(&findings), findings)
 }
@@ -141,7 +141,7 @@ fn packed_by(options: SimpleFileOptions, files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     writer.finish().expect("finishes").into_inner()
 }
 
-fn survey(bytes: Vec<u8>) -> CheckReport {
+fn survey(bytes: Vec<u8>) -> Report {
     let archive = Archive::survey_bytes("good.fmu", bytes, ArchiveLimits::DEFAULT).expect("opens");
     check_archive(archive).expect("is checked").report()
 }
@@ -170,7 +170,7 @@ fn a_change_of_a_file_is_found_by_one_rule() {
     use rules::*;
     const ICONS: &str = "terminalsAndIcons/terminalsAndIcons.xml";
     const BUILDS: &str = "sources/buildDescription.xml";
-    let cases: Vec<(&CheckRule, &str, Vec<Change>)> = vec![
+    let cases: Vec<(&Rule, &str, Vec<Change>)> = vec![
         (&FILES_DOCUMENTATION, GOOD2, vec![Remove("documentation/index.html")]),
         (&FILES_LICENCE, GOOD2, vec![Remove("documentation/licenses/license.txt")]),
         (

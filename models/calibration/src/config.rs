@@ -1,6 +1,7 @@
 //! Configuration of the core, given before the first sample. All angles in rad, all quantities SI.
 
 mod further;
+mod of_grade;
 mod sigma_limits;
 #[cfg(feature = "state")]
 mod stored;

@@ -1,7 +1,6 @@
 //! Content of a state as text: names and kinds of its values without the values. A test that
 //! compares it with a stored outline finds a layout that changed without its version.
 
-use crate::{State, Writer};
 use alloc::string::String;
 use serde::Serialize;
 
@@ -43,6 +42,12 @@ impl Outline {
         self.text.push_str(line);
         self.last = line.into();
         self.count = 1;
+    }
+
+    /// The text, at the end.
+    pub(crate) fn into_text(mut self) -> String {
+        self.close();
+        self.text
     }
 
     fn close(&mut self) {
@@ -118,26 +123,12 @@ fn kinds(json: &str) -> String {
     out
 }
 
-impl Writer {
-    /// Lists names and kinds of the values of a state, one a line.
-    #[must_use]
-    pub fn outline<T: State + ?Sized>(state: &T) -> String {
-        let mut writer = Self::default();
-        writer.outline = Some(Outline::default());
-        state.save(&mut writer);
-        let Some(mut outline) = writer.outline else { return String::new() };
-        outline.close();
-        outline.text
-    }
-}
-
 /// Lists name and kinds of one value that isn't a state, such as a configuration.
 #[must_use]
 pub fn outline_of<T: Serialize>(name: &str, value: &T) -> String {
     let mut outline = Outline::default();
     outline.value(name, value);
-    outline.close();
-    outline.text
+    outline.into_text()
 }
 
 /// Compares a layout, made of outlines with their names, with the stored one, which begins with its

@@ -81,7 +81,7 @@ fn the_root_of_a_manifest_has_any_name_and_any_content() {
 }
 
 /// Rule, file, original text and replacement.
-type Case = (&'static CheckRule, usize, &'static str, &'static str);
+type Case = (&'static Rule, usize, &'static str, &'static str);
 
 #[rustfmt::skip]
 const CASES: &[Case] = &[

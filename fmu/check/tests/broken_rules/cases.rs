@@ -4,7 +4,7 @@ use super::{Edit, GOOD2, GOOD3};
 use octant_fmu_check::rules::*;
 
 /// Rule, description, edits, and a part of the message.
-pub(super) type Case = (&'static CheckRule, &'static str, Vec<Edit<'static>>, &'static str);
+pub(super) type Case = (&'static Rule, &'static str, Vec<Edit<'static>>, &'static str);
 
 /// One case a line, so that each edit is beside its rule.
 #[rustfmt::skip]

@@ -1,8 +1,8 @@
 //! One call of a function of an FMU: its name, its status, and the meaning of the status.
 
 use super::super::description::Description;
-use super::message::{Log, status_name};
-use super::{FmuMessage, InstanceError};
+use super::error::InstanceError;
+use super::message::{FmuMessage, Log, status_name};
 use octant_fmi::{fmi2, fmi3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

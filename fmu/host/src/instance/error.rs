@@ -1,6 +1,5 @@
 //! Errors of a running FMU.
 
-use super::VariableGroup;
 use octant_base::failing::FailureKind;
 use serde::{Deserialize, Serialize};
 
@@ -145,16 +144,5 @@ impl InstanceError {
         reason: impl Into<String>,
     ) -> Self {
         Self::Unsupported { fmu: fmu.into(), what: what.into(), reason: reason.into() }
-    }
-
-    /// Error for a number of values that doesn't fit the groups.
-    pub(crate) fn numbers(fmu: &str, groups: &[VariableGroup], found: usize) -> Self {
-        let expected: usize = groups.iter().map(|group| group.elements).sum();
-        let kinds: Vec<String> = groups.iter().map(|group| format!("{:?}", group.kind)).collect();
-        Self::unsupported(
-            fmu,
-            format!("exchange {found} values of {}", kinds.join(", ")),
-            format!("its variables have {expected} elements"),
-        )
     }
 }

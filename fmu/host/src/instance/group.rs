@@ -3,8 +3,8 @@
 use super::super::description::{
     Causality, Description, Standard, Variability, Variable, VariableType,
 };
-use super::InstanceError;
 use super::call::Base;
+use super::error::InstanceError;
 use super::number::Number;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -167,6 +167,17 @@ pub(super) fn element_name(
     format!("element {element}")
 }
 
+/// Error for a number of values that doesn't fit the groups.
+pub(crate) fn unfitting(fmu: &str, groups: &[VariableGroup], found: usize) -> InstanceError {
+    let expected: usize = groups.iter().map(|group| group.elements).sum();
+    let kinds: Vec<String> = groups.iter().map(|group| format!("{:?}", group.kind)).collect();
+    InstanceError::unsupported(
+        fmu,
+        format!("exchange {found} values of {}", kinds.join(", ")),
+        format!("its variables have {expected} elements"),
+    )
+}
+
 /// Checks that the number of values fits the group.
 pub(super) fn expect_elements(
     base: &Base,
@@ -176,7 +187,7 @@ pub(super) fn expect_elements(
     if values == group.elements {
         Ok(())
     } else {
-        Err(InstanceError::numbers(&base.name, std::slice::from_ref(group), values))
+        Err(unfitting(&base.name, std::slice::from_ref(group), values))
     }
 }
 

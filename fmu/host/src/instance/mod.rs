@@ -209,7 +209,7 @@ pub trait Instance: Send {
     ) -> Result<Stepped, InstanceError> {
         for (groups, count) in [(set, inputs.len()), (get, outputs.len())] {
             if groups.iter().map(|group| group.elements).sum::<usize>() != count {
-                return Err(InstanceError::numbers(self.name(), groups, count));
+                return Err(group::unfitting(self.name(), groups, count));
             }
         }
         let mut rest = inputs;

@@ -2,6 +2,7 @@
 
 use super::super::archive::Unpacked;
 use super::super::description::Description;
+use super::super::instance::group::unfitting;
 use super::super::instance::{
     ClockNews, FmuMessage, Instance, InstanceError, OpenOptions, StepOutcome, Stepped, Update,
     VariableGroup,
@@ -240,10 +241,10 @@ impl Instance for Remote {
         let count =
             |groups: &[VariableGroup]| groups.iter().map(|group| group.elements).sum::<usize>();
         if inputs.len() != count(set) {
-            return Err(InstanceError::numbers(&self.name, set, inputs.len()));
+            return Err(unfitting(&self.name, set, inputs.len()));
         }
         if outputs.len() != count(get) {
-            return Err(InstanceError::numbers(&self.name, get, outputs.len()));
+            return Err(unfitting(&self.name, get, outputs.len()));
         }
         let Some(plan) = self.plan(set, get)? else {
             return by_parts(self, set, inputs, time_s, step_s, get, outputs);
@@ -305,7 +306,7 @@ impl Instance for Remote {
     fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         if values.len() != group.elements {
             let groups = std::slice::from_ref(group);
-            return Err(InstanceError::numbers(&self.name, groups, values.len()));
+            return Err(unfitting(&self.name, groups, values.len()));
         }
         match self.ask(&Request::Get { group: group.clone() })? {
             Answer::Numbers(numbers) if numbers.len() == values.len() => {

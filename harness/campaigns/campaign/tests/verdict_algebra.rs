@@ -5,18 +5,14 @@
 //! use.
 
 use octant_base::control::Control;
-use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case::{self, CaseResult};
+use octant_campaign::judge::status;
+use octant_campaign::judge::trace;
+use octant_campaign::plan::requirements::Planned;
 use octant_campaign::plan::{self, Case, CaseLimits, Plan, PlannedScenario};
-use octant_campaign::requirements::Planned;
 use octant_campaign::store::{self, StoreOutcome};
-use octant_campaign::{status, trace};
 use octant_realtime::schedule::{Granted, RequestOutcome};
-use octant_requirements::requirement::{
-    self as required, Check, EnsembleRequirement, Limit, Requirements, Verification,
-};
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Comparison, Verdict};
 use octant_run::TimeKeeping;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
@@ -25,6 +21,11 @@ use octant_score::summary::{
     BaselineMethod, CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel,
     LatenessQuantiles, NavigationScore, PacingRecord, RadialScore, Summary,
 };
+use octant_verdict::requirement::{
+    self as required, Check, EnsembleRequirement, Limit, Requirements, Verification,
+};
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{Comparison, Verdict};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

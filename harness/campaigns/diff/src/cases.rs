@@ -6,9 +6,7 @@ use super::settings::{SettingDiff, compare};
 use octant_campaign::plan;
 use octant_evidence::Manifest;
 use octant_evidence::manifest::Machine;
-use octant_nightly::compare::{
-    self as nights, Change, ChangeThresholds, NightComparison, NightSide,
-};
+use octant_nightly::compare::{self as nights, Change, NightComparison, Side, Thresholds};
 use octant_nightly::night::{self, CampaignNight, Night, Program};
 use octant_nightly::results::{self, CaseRow};
 use serde::Serialize;
@@ -101,9 +99,9 @@ impl CampaignDiff {
         let [named_first, named_second] =
             [&of_first, &of_second].map(|rows| BTreeMap::from([(NAME.to_owned(), rows.clone())]));
         let comparison = nights::compare(
-            NightSide { night: &nights[0], rows: &named_first },
-            NightSide { night: &nights[1], rows: &named_second },
-            ChangeThresholds::default(),
+            Side { night: &nights[0], rows: &named_first },
+            Side { night: &nights[1], rows: &named_second },
+            Thresholds::default(),
             &|_, case| format!("case {case} of {}", second.display()),
         );
         let pairs = pairs(&of_first, &of_second);

@@ -25,7 +25,7 @@ pub use error::DiffError;
 
 use serde::Serialize;
 use settings::SettingDiff;
-use side::{DiffSide, SideAbout};
+use side::{Side, SideAbout};
 use std::path::Path;
 
 /// Version of the form of `octant diff --json`.
@@ -56,7 +56,7 @@ pub struct RunDiff {
 ///
 /// # Errors
 /// If one of them can't be read.
-pub fn runs(first: &DiffSide, second: &DiffSide) -> Result<RunDiff, DiffError> {
+pub fn runs(first: &Side, second: &Side) -> Result<RunDiff, DiffError> {
     let settings = settings::compare(&first.scenario, &second.scenario);
     let stream = stream::compare(first, second)?;
     let mut notes = Vec::new();

@@ -3,17 +3,17 @@
 use super::RunDiff;
 use super::cases::CampaignDiff;
 use super::settings::SettingDiff;
-use super::side::DiffSide;
+use super::side::Side;
 use super::text::{in_words, number, shown, significance, stream_in_words};
 use maud::{Markup, html};
 use octant_base::number::{fixed, significant};
 use octant_nightly::compare::Change;
-use octant_report::chart::{Chart, ChartLine, ChartRole};
+use octant_report::chart::{Chart, Line, Role};
 use octant_report::page::page;
 
 /// Renders the difference between two runs.
 #[must_use]
-pub fn of_runs(diff: &RunDiff, sides: [&DiffSide; 2]) -> String {
+pub fn of_runs(diff: &RunDiff, sides: [&Side; 2]) -> String {
     let body = html! {
         header {
             div.eyebrow { "Difference between two runs" }
@@ -87,9 +87,8 @@ fn positions(diff: &RunDiff) -> Markup {
         "hours of run time",
         "position, B minus A, m",
     );
-    for (label, role, column) in [("east", ChartRole::Second, 2), ("north", ChartRole::Primary, 1)]
-    {
-        chart.lines.push(ChartLine {
+    for (label, role, column) in [("east", Role::Second, 2), ("north", Role::Primary, 1)] {
+        chart.lines.push(Line {
             label: label.to_owned(),
             role,
             points: diff.stream.position_m.iter().map(|p| [p[0], p[column]]).collect(),
@@ -99,8 +98,8 @@ fn positions(diff: &RunDiff) -> Markup {
 }
 
 /// Draws the errors of both navigations over each other.
-fn errors(sides: [&DiffSide; 2]) -> Markup {
-    let navigation = |side: &DiffSide| side.summary.as_ref().and_then(|s| s.navigation.clone());
+fn errors(sides: [&Side; 2]) -> Markup {
+    let navigation = |side: &Side| side.summary.as_ref().and_then(|s| s.navigation.clone());
     let both = sides.map(navigation);
     if both.iter().all(Option::is_none) {
         return html! {};
@@ -108,10 +107,10 @@ fn errors(sides: [&DiffSide; 2]) -> Markup {
     let chart = |name: &str, column: usize| {
         let title = format!("{name} error");
         let mut chart = Chart::new(&title, "hours of navigation", &format!("{title}, arcmin"));
-        let roles = [("A", ChartRole::Baseline), ("B", ChartRole::Primary)];
+        let roles = [("A", Role::Baseline), ("B", Role::Primary)];
         for ((label, role), navigation) in roles.iter().zip(&both) {
             let series = navigation.iter().flat_map(|n| &n.series_hours);
-            chart.lines.push(ChartLine {
+            chart.lines.push(Line {
                 label: (*label).to_owned(),
                 role: *role,
                 points: series.map(|p| [p[0], p[column]]).collect(),
@@ -198,10 +197,8 @@ fn pairs(scenario: &str, measure: &str, values: &[(f64, f64)]) -> Markup {
     let points = |value: &dyn Fn(&(f64, f64)) -> f64| {
         values.iter().enumerate().map(|(i, v)| [1.0 + i as f64, value(v)]).collect()
     };
-    let first =
-        ChartLine { label: "A".to_owned(), role: ChartRole::Baseline, points: points(&|v| v.0) };
-    let second =
-        ChartLine { label: "B".to_owned(), role: ChartRole::Primary, points: points(&|v| v.1) };
+    let first = Line { label: "A".to_owned(), role: Role::Baseline, points: points(&|v| v.0) };
+    let second = Line { label: "B".to_owned(), role: Role::Primary, points: points(&|v| v.1) };
     chart.lines = vec![first, second];
     chart.render()
 }

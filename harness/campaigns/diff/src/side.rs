@@ -3,8 +3,8 @@
 use super::error::DiffError;
 use octant_evidence::Manifest;
 use octant_evidence::ended;
-use octant_evidence::inside::SUMMARY;
 use octant_evidence::manifest::FILE_NAME as MANIFEST;
+use octant_evidence::statements::SUMMARY;
 use octant_recorder::reader::{Info, Recording};
 use octant_score::summary::Summary;
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub struct SideAbout {
 
 /// One of two runs.
 #[derive(Clone, Debug)]
-pub struct DiffSide {
+pub struct Side {
     /// Origin.
     pub about: SideAbout,
     /// The recording.
@@ -50,7 +50,7 @@ pub struct DiffSide {
     pub summary: Option<Summary>,
 }
 
-impl DiffSide {
+impl Side {
     /// Reads the run in a folder, or a recording alone.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use super::error::DiffError;
 use super::fields::{encode, first_difference};
-use super::side::DiffSide;
+use super::side::Side;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_recorder::message::Topic;
 use octant_recorder::reader::{Item, Recording};
@@ -75,7 +75,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn open(side: &DiffSide) -> Result<Self, DiffError> {
+    fn open(side: &Side) -> Result<Self, DiffError> {
         let path = side.recording.clone();
         let recording = Recording::open(&path)
             .map_err(|source| DiffError::Recording { path: path.clone(), source })?;
@@ -103,7 +103,7 @@ impl Reader {
 }
 
 /// Compares two recordings to the end of both.
-pub(crate) fn compare(first: &DiffSide, second: &DiffSide) -> Result<StreamDiff, DiffError> {
+pub(crate) fn compare(first: &Side, second: &Side) -> Result<StreamDiff, DiffError> {
     let is_same_policy =
         (first.info.samples, first.info.period_ns) == (second.info.samples, second.info.period_ns);
     let mut found = Found {

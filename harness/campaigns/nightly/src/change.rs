@@ -6,14 +6,14 @@ use serde::Serialize;
 
 /// Thresholds of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ChangeThresholds {
+pub struct Thresholds {
     /// Probability of any false positive among all tests.
     pub alpha: f64,
     /// Smallest change of the mean that counts, as a fraction of the baseline's root mean square.
     pub least: f64,
 }
 
-impl Default for ChangeThresholds {
+impl Default for Thresholds {
     fn default() -> Self {
         Self { alpha: 0.05, least: 0.01 }
     }
@@ -91,7 +91,7 @@ pub struct Tested {
 pub fn tested(
     values: &[(Option<f64>, Option<f64>)],
     sense: f64,
-    limits: ChangeThresholds,
+    limits: Thresholds,
 ) -> Option<Tested> {
     // A measure that only one night has is as bad as possible in the other.
     let far = sense * f64::INFINITY;

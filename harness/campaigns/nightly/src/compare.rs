@@ -3,23 +3,23 @@
 //! A case of both nights has the same instrument and the same noise: a difference comes from the
 //! program, or from a changed scenario. Whether it is a regression is decided over all pairs, by
 //! Wilcoxon's signed-rank test for measures and McNemar's for passes; all of these tests together
-//! have a false-positive probability of one in twenty (`ChangeThresholds::alpha`, Holm). Cases without a pair
+//! have a false-positive probability of one in twenty (`Thresholds::alpha`, Holm). Cases without a pair
 //! aren't compared: another seed is another instrument, and its noise is no change.
 //!
 //! A measure that a case had in one night and lacks in the other, because its calibration was
 //! refused or it ended as an error, is beyond every number there, and counts in the test with the
 //! highest rank.
 
-pub use super::change::{Change, ChangeThresholds, Tested, tested};
+pub use super::change::{Change, Tested, Thresholds, tested};
 
 use super::night::{CampaignNight, Night, Program};
 use super::results::{CaseRow, SCORED_LATER};
 use super::suite::SuiteResult;
-use octant_requirements::Verdict;
 use octant_score::numerics::in_words;
 use octant_statistics::multiple::holm;
 use octant_statistics::paired::PassPairs;
 use octant_statistics::power;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -77,7 +77,7 @@ pub struct NightComparison {
     /// to the unit; null if they are the same.
     pub numerics_changed: Option<String>,
     /// Thresholds of a change.
-    pub limits: ChangeThresholds,
+    pub limits: Thresholds,
     /// Campaigns of both nights.
     pub pairings: Vec<Pairing>,
     /// Campaigns and parts of the suite that only the baseline has.
@@ -100,7 +100,7 @@ pub struct NightComparison {
 
 /// A night with the rows of its campaigns, by name.
 #[derive(Clone, Copy, Debug)]
-pub struct NightSide<'a> {
+pub struct Side<'a> {
     /// The night.
     pub night: &'a Night,
     /// Rows of its campaigns.
@@ -111,9 +111,9 @@ pub struct NightSide<'a> {
 /// campaign again.
 #[must_use]
 pub fn compare(
-    before: NightSide<'_>,
-    now: NightSide<'_>,
-    limits: ChangeThresholds,
+    before: Side<'_>,
+    now: Side<'_>,
+    limits: Thresholds,
     rerun: &dyn Fn(&str, &str) -> String,
 ) -> NightComparison {
     let same_program = now.night.program.is_same(&before.night.program);

@@ -253,7 +253,7 @@ fn measured(night: &Night, rows: &BTreeMap<String, Vec<CaseRow>>) -> Vec<Measure
                 if let Some(margin) = margin {
                     put(format!("margin of {id}"), *margin);
                 }
-                let passed = *verdict == octant_requirements::Verdict::Pass;
+                let passed = *verdict == octant_verdict::Verdict::Pass;
                 put(format!("passes of {id}"), fraction(passed));
             }
         }

@@ -5,7 +5,7 @@ use super::night::{CampaignNight, Night, Program};
 use super::suite::SuiteResult;
 use octant_base::number::{counted, plain, significant};
 use octant_base::printable::printable;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,11 +1,11 @@
 //! Reads the results of a campaign's cases from its tables.
 
-use octant_campaign::factors::parts;
+use octant_campaign::merge::factors::parts;
 use octant_campaign::merge::merged;
 use octant_campaign::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
-use octant_requirements::{Comparison, Verdict};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_score::rederive::stands;
+use octant_verdict::{Comparison, Verdict};
 use std::collections::BTreeMap;
 use std::path::Path;
 

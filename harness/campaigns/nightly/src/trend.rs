@@ -5,7 +5,7 @@ use super::units::TrendUnits;
 use maud::{Markup, html};
 use octant_base::display::DisplayUnits;
 use octant_base::number::counted;
-use octant_report::chart::{Chart, ChartLine as Drawn, ChartRole};
+use octant_report::chart::{Chart, Line as Drawn, Role};
 use octant_report::page::page;
 use octant_report::units::{shown, unit};
 use std::collections::BTreeMap;
@@ -137,8 +137,8 @@ pub fn chart(line: &TrendLine, baseline: Option<usize>, units: &DisplayUnits) ->
         line.points.iter().map(at).collect()
     };
     chart.lines = vec![
-        Drawn { label: "95th percentile".into(), role: ChartRole::Baseline, points: of(|p| p.p95) },
-        Drawn { label: "median".into(), role: ChartRole::Primary, points: of(|p| p.median) },
+        Drawn { label: "95th percentile".into(), role: Role::Baseline, points: of(|p| p.p95) },
+        Drawn { label: "median".into(), role: Role::Primary, points: of(|p| p.median) },
     ];
     let reference =
         baseline.and_then(|night| line.points.iter().find(|point| point.night == night));

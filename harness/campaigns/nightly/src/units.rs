@@ -8,7 +8,7 @@ use super::history::History;
 use super::night::nights;
 use octant_base::display::{DisplayUnits, PositionUnit, UnitChoice};
 use octant_campaign::plan::{FILE_NAME, Plan};
-use octant_campaign::sites;
+use octant_campaign::report::sites;
 use std::collections::BTreeMap;
 use std::path::Path;
 

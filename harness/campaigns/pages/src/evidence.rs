@@ -49,7 +49,7 @@ pub fn write(
     keep(&folder.join(STATISTICS), statistics.as_bytes())?;
     keep(&folder.join(PREDICTION), prediction.as_bytes())?;
     let wrong = |source| ReportError::System { action: "write", path: path_of(JUNIT), source };
-    octant_campaign::keep_new(&path_of(JUNIT), xml).map_err(wrong)?;
+    octant_base::whole_file::keep_new(&path_of(JUNIT), xml).map_err(wrong)?;
     keep(&folder.join(PAGE), html.as_bytes())?;
     inputs(report, folder)?;
     // An old signature doesn't apply to the new manifest.
@@ -90,8 +90,8 @@ pub fn write(
 fn new_junit(report: &CampaignReport<'_>, path: &Path) -> Result<NamedTempFile, ReportError> {
     let folder = path.parent().unwrap_or(path);
     let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
-    octant_campaign::clean(folder);
-    let new = octant_campaign::new_file(folder).map_err(wrong)?;
+    octant_base::whole_file::clean(folder);
+    let new = octant_base::whole_file::new_file(folder).map_err(wrong)?;
     let mut writer = BufWriter::new(new.as_file());
     junit(report, &mut writer).and_then(|()| writer.flush()).map_err(wrong)?;
     drop(writer);
@@ -152,5 +152,5 @@ fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportEr
 /// Writes a file whole or not at all, and only if it changes.
 fn keep(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
-    octant_campaign::keep(path, bytes).map_err(wrong)
+    octant_base::whole_file::keep(path, bytes).map_err(wrong)
 }

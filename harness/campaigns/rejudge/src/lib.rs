@@ -6,23 +6,23 @@
 //! were never stored.
 
 use octant_base::failing::{Failing, FailureKind};
-use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case::{self, CaseResult};
+use octant_campaign::judge::status;
 use octant_campaign::plan::{self, Plan};
 use octant_campaign::report::file_names::STATISTICS;
-use octant_campaign::status;
 use octant_campaign::store::writer::PartWriter;
 use octant_campaign::store::{CampaignResults, StoredResult, keep_in};
 use octant_evidence::ended::is_partial;
 use octant_evidence::files;
-use octant_evidence::inside::{SUMMARY, certified};
 use octant_evidence::manifest::{self, FILE_NAME, Manifest, ManifestError};
+use octant_evidence::statements::{SUMMARY, certified};
 use octant_nightly::night::{self, Night};
-use octant_requirements::Verdict;
 use octant_score::numerics::{NUMERICS, differs};
 use octant_score::rederive;
 use octant_score::summary::Summary;
 use octant_score::verdict::RequirementResult;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -46,14 +46,14 @@ pub struct Rejudged {
     /// SHA-256 of the manifest, hexadecimal; null without one, as for a night.
     pub manifest_sha256: Option<String>,
     /// Judged subjects: a run, a campaign, each campaign of a night.
-    pub judged: Vec<JudgedSubject>,
+    pub judged: Vec<Subject>,
     /// The worst of the new verdicts.
     pub verdict: Verdict,
 }
 
 /// Judged subject.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct JudgedSubject {
+pub struct Subject {
     /// Kind: `run`, `campaign`.
     pub what: &'static str,
     /// Title.
@@ -71,16 +71,16 @@ pub struct JudgedSubject {
     /// Present reasons.
     pub reasons_now: Vec<String>,
     /// Requirements.
-    pub requirements: Vec<RejudgedCheck>,
+    pub requirements: Vec<Check>,
     /// Cases of a campaign whose verdict has changed.
-    pub cases: Vec<RejudgedCase>,
+    pub cases: Vec<Case>,
     /// Quantities that can't be derived, because they were never stored.
     pub not_stored: Vec<String>,
 }
 
 /// Requirement with its stored and its present verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RejudgedCheck {
+pub struct Check {
     /// Id.
     pub id: String,
     /// Verdict at the time of the run; null if the folder doesn't contain it.
@@ -93,7 +93,7 @@ pub struct RejudgedCheck {
 
 /// Case with its stored and its present verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RejudgedCase {
+pub struct Case {
     /// Id.
     pub case: String,
     /// Stored verdict.
@@ -212,7 +212,7 @@ fn form(path: &Path, reason: impl ToString) -> RejudgeError {
     RejudgeError::Form { path: path.to_owned(), reason: reason.to_string() }
 }
 
-fn run(folder: &Path, manifest: &Manifest) -> Result<JudgedSubject, RejudgeError> {
+fn run(folder: &Path, manifest: &Manifest) -> Result<Subject, RejudgeError> {
     let path = folder.join(SUMMARY);
     let bytes = manifest.read_file(folder, SUMMARY)?;
     let text = String::from_utf8(bytes).map_err(|_| form(&path, "it is no text"))?;
@@ -228,7 +228,7 @@ fn run(folder: &Path, manifest: &Manifest) -> Result<JudgedSubject, RejudgeError
     let certified = certified(manifest).map_err(|reason| form(&folder.join(FILE_NAME), reason))?;
     let again = rederive::rejudge(&stored, &certified).map_err(|error| form(&path, error))?;
     let now = again.summary;
-    Ok(JudgedSubject {
+    Ok(Subject {
         what: "run",
         title: stored.scenario.clone(),
         made_by: vec![stored.octant.clone()],
@@ -243,8 +243,8 @@ fn run(folder: &Path, manifest: &Manifest) -> Result<JudgedSubject, RejudgeError
     })
 }
 
-fn checks(then: &[RequirementResult], now: &[RequirementResult]) -> Vec<RejudgedCheck> {
-    let one = |(then, now): (&RequirementResult, &RequirementResult)| RejudgedCheck {
+fn checks(then: &[RequirementResult], now: &[RequirementResult]) -> Vec<Check> {
+    let one = |(then, now): (&RequirementResult, &RequirementResult)| Check {
         id: now.id.clone(),
         then: Some(then.verdict),
         now: now.verdict,
@@ -280,7 +280,7 @@ fn campaign(
     folder: &Path,
     then: Option<Verdict>,
     requirements: &BTreeMap<String, Verdict>,
-) -> Result<JudgedSubject, RejudgeError> {
+) -> Result<Subject, RejudgeError> {
     let path = folder.join(plan::FILE_NAME);
     let plan = Plan::read(&path).map_err(|error| form(&path, error))?;
     let system = |reason: String| RejudgeError::System { folder: folder.to_owned(), reason };
@@ -315,7 +315,7 @@ fn campaign(
         };
         if again.verdict != stored.verdict {
             let reasons = again.summary.as_ref().map(|summary| summary.reasons.clone());
-            cases.push(RejudgedCase {
+            cases.push(Case {
                 case: case.id.to_string(),
                 then: stored.verdict,
                 now: again.verdict,
@@ -333,7 +333,7 @@ fn campaign(
     }
     let status =
         status::of(&plan, place.path(), Shard::WHOLE).map_err(|error| system(error.to_string()))?;
-    let one = |(id, found): (&String, &status::RequirementStatus)| RejudgedCheck {
+    let one = |(id, found): (&String, &status::RequirementStatus)| Check {
         id: id.clone(),
         then: requirements.get(id).copied(),
         now: found.verdict,
@@ -350,7 +350,7 @@ fn campaign(
             status.cases
         ));
     }
-    Ok(JudgedSubject {
+    Ok(Subject {
         what: "campaign",
         title: plan.title.clone(),
         made_by: made_by.into_iter().collect(),
@@ -369,11 +369,11 @@ impl Rejudged {
     /// Renders the comparison as text.
     #[must_use]
     pub fn text(&self) -> String {
-        self.judged.iter().map(JudgedSubject::text).collect()
+        self.judged.iter().map(Subject::text).collect()
     }
 }
 
-impl JudgedSubject {
+impl Subject {
     fn text(&self) -> String {
         let name = |verdict: Option<Verdict>| verdict.map_or("not told", Verdict::name);
         let mut text = format!("{} {}\n", self.what, self.title);

@@ -3,7 +3,7 @@
 use super::error::{BenchError, FileError};
 use super::judge::CaseOutcome;
 use octant_base::child::{ChildEnded, finish};
-use octant_campaign::process;
+use octant_campaign::execute::process;
 use octant_score::summary::Summary;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;

@@ -12,7 +12,7 @@ pub const STARTED_LIMIT: Duration = Duration::from_secs(3600);
 
 /// Case: an action, and its expected outcome.
 #[derive(Debug)]
-pub struct SelftestCase {
+pub struct Case {
     /// Name.
     pub id: &'static str,
     /// Purpose, as a sentence.

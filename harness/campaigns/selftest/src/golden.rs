@@ -1,7 +1,7 @@
 //! Numbers known from other sources: closed forms, matrix exponentials, an independent filter.
 
 use super::bench::CaseBench;
-use super::case::{STARTED_LIMIT, SelftestCase};
+use super::case::{Case, STARTED_LIMIT};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation, Known};
 use super::scenarios::{BELIEVING, MOSTLY, SHORT, SPIKE, campaign};
@@ -21,10 +21,10 @@ fn known(name: &str, value: f64, tolerance: f64) -> Known {
     Known { name: name.to_owned(), value, tolerance }
 }
 
-pub(super) fn cases() -> Vec<SelftestCase> {
+pub(super) fn cases() -> Vec<Case> {
     let numbers = |known: Vec<Known>, source| Expectation::Numbers { known, source };
     vec![
-        SelftestCase {
+        Case {
             id: "free-inertial-growth",
             about: "A gyro error of 0.01 deg/h to the north grows over 24 h as the free-inertial \
                     system says.",
@@ -36,7 +36,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
             limit: STARTED_LIMIT,
             run: free_inertial,
         },
-        SelftestCase {
+        Case {
             id: "g-dependent-drift",
             about: "What an uncompensated g_zz of 5e-4 deg/h/g leaves in navigation, and Schuler's \
                     period at 30.5°.",
@@ -52,7 +52,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
             limit: STARTED_LIMIT,
             run: drift,
         },
-        SelftestCase {
+        Case {
             id: "observability",
             about: "Six positions don't see Gxx, Gyy and Gzz, eight see all but their sum.",
             expectation: numbers(
@@ -68,7 +68,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
             limit: STARTED_LIMIT,
             run: ranks,
         },
-        SelftestCase {
+        Case {
             id: "posterior-sigma",
             about: "σ of all 39 states after four hours in six and in eight positions.",
             expectation: numbers(
@@ -78,7 +78,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
             limit: STARTED_LIMIT,
             run: posterior,
         },
-        SelftestCase {
+        Case {
             id: "consistent-filter",
             about: "A filter that is right has a mean normalized innovation squared of 3 on three axes.",
             expectation: numbers(
@@ -89,7 +89,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
             limit: STARTED_LIMIT,
             run: consistent,
         },
-        SelftestCase {
+        Case {
             id: "spike-believed",
             about: "A spike of 500 arcsec that the core believes moves a parameter by 122 σ.",
             expectation: numbers(
@@ -99,7 +99,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
             limit: STARTED_LIMIT,
             run: believed,
         },
-        SelftestCase {
+        Case {
             id: "stream-hash",
             about: "Every sample, every aiding message and every output of ten minutes has the bits \
                     that it had where this version was made.",
@@ -111,7 +111,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
             limit: STARTED_LIMIT,
             run: stream_hash,
         },
-        SelftestCase {
+        Case {
             id: "fifty-nine",
             about: "Zero failures in 59 runs show 95 % with a confidence of 95 %: after one, 58 are \
                     needed.",

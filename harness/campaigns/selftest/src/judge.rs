@@ -4,7 +4,7 @@
 //! verdicts of this program can't be trusted. It is an alarm.
 
 use octant_base::number::significant;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -19,7 +19,7 @@ mod scenarios;
 pub mod verdicts;
 mod within;
 
-pub use case::{COMPUTED_LIMIT, STARTED_LIMIT, SelftestCase};
+pub use case::{COMPUTED_LIMIT, Case, STARTED_LIMIT};
 
 use error::CaseFolderError;
 use octant_base::pool::in_order;
@@ -29,7 +29,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Lists all cases, in the order of the report.
 #[must_use]
-pub fn cases() -> Vec<SelftestCase> {
+pub fn cases() -> Vec<Case> {
     let mut all = golden::cases();
     all.extend(answers::cases());
     all.extend(verdicts::must_pass());
@@ -45,7 +45,7 @@ pub fn cases() -> Vec<SelftestCase> {
 /// If the folders of the cases can't be made.
 pub fn run(
     program: &Path,
-    cases: &[SelftestCase],
+    cases: &[Case],
     jobs: usize,
     cancel: &AtomicBool,
     tell: &(dyn Fn(&CaseRecord) + Sync),

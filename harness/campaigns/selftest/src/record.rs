@@ -1,6 +1,6 @@
 //! `selftest.json`: result of a self-test, with program, machine and time.
 
-use super::case::SelftestCase;
+use super::case::Case;
 use super::error::{CaseSetupError, FileError};
 use super::judge::{CaseOutcome, CaseVerdict, judge};
 use octant_base::hash::sha256;
@@ -40,7 +40,7 @@ pub struct CaseRecord {
 
 /// Record of a self-test.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SelftestRecord {
+pub struct Record {
     /// Version of this form: [`SCHEMA`].
     pub schema: u32,
     /// Worst verdict of all cases: `pass`, `fail`, `error`, `alarm`; `inconclusive` if it was
@@ -77,7 +77,7 @@ pub struct SelftestRecord {
 impl CaseRecord {
     /// Creates the record of a case with its outcome.
     #[must_use]
-    pub fn of(case: &SelftestCase, outcome: &Result<CaseOutcome, CaseSetupError>) -> Self {
+    pub fn of(case: &Case, outcome: &Result<CaseOutcome, CaseSetupError>) -> Self {
         let (verdict, found) = match outcome {
             Ok(outcome) => judge(&case.expectation, outcome),
             Err(reason) => (CaseVerdict::Error, format!("failed to {reason}")),
@@ -94,7 +94,7 @@ impl CaseRecord {
     }
 }
 
-impl SelftestRecord {
+impl Record {
     /// Creates the record of the cases that were run, out of `planned` cases.
     ///
     /// # Errors
@@ -212,8 +212,8 @@ pub fn write(path: &Path, text: &str) -> Result<(), FileError> {
     let failed = FileError::of("write", path);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
-    octant_campaign::clean(folder);
-    let new = octant_campaign::new_file(folder).map_err(&failed)?;
+    octant_base::whole_file::clean(folder);
+    let new = octant_base::whole_file::new_file(folder).map_err(&failed)?;
     std::fs::write(new.path(), text).map_err(&failed)?;
     new.as_file().sync_data().map_err(&failed)?;
     new.persist(path).map_err(|error| failed(error.error))?;

@@ -2,13 +2,13 @@
 //! in parts.
 
 use super::bench::CaseBench;
-use super::case::{STARTED_LIMIT, SelftestCase};
+use super::case::{Case, STARTED_LIMIT};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, SHORT, campaign};
 
-pub(super) fn cases() -> Vec<SelftestCase> {
-    let case = |id, about, run| SelftestCase {
+pub(super) fn cases() -> Vec<Case> {
+    let case = |id, about, run| Case {
         id,
         about,
         expectation: Expectation::Same,

@@ -2,22 +2,22 @@
 //! recordings, in evidence and in campaigns.
 
 use super::bench::CaseBench;
-use super::case::{STARTED_LIMIT, SelftestCase};
+use super::case::{Case, STARTED_LIMIT};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, BELIEVING, MOSTLY, SHORT, SPIKE, campaign, needs, planned};
 use minisign::KeyPair;
-use octant_campaign::case::ResultError;
+use octant_campaign::execute::case::ResultError;
 use octant_campaign::store::{CampaignResults, keep};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 const BIAS_STEP: &str = include_str!("../../../../fixtures/selftest/bias-step.toml");
 const DROPPED: &str = include_str!("../../../../fixtures/selftest/dropped.toml");
 
 type Work = fn(&CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError>;
 
-fn passes(id: &'static str, about: &'static str, run: Work) -> SelftestCase {
-    SelftestCase { id, about, expectation: Expectation::Pass, limit: STARTED_LIMIT, run }
+fn passes(id: &'static str, about: &'static str, run: Work) -> Case {
+    Case { id, about, expectation: Expectation::Pass, limit: STARTED_LIMIT, run }
 }
 
 fn fails(
@@ -25,12 +25,12 @@ fn fails(
     about: &'static str,
     (status, because): (i32, &'static str),
     run: Work,
-) -> SelftestCase {
+) -> Case {
     let expectation = Expectation::NotPass { status, because };
-    SelftestCase { id, about, expectation, limit: STARTED_LIMIT, run }
+    Case { id, about, expectation, limit: STARTED_LIMIT, run }
 }
 
-pub(super) fn must_pass() -> Vec<SelftestCase> {
+pub(super) fn must_pass() -> Vec<Case> {
     vec![
         passes("kept", "A requirement that is kept, without a fault.", |bench| {
             Ok(bench.run(&clean(SHORT)?, &[])?.into())
@@ -53,7 +53,7 @@ pub(super) fn must_pass() -> Vec<SelftestCase> {
     ]
 }
 
-pub(super) fn must_fail() -> Vec<SelftestCase> {
+pub(super) fn must_fail() -> Vec<Case> {
     let mut all = runs();
     all.extend(files());
     all.extend(campaigns());
@@ -61,7 +61,7 @@ pub(super) fn must_fail() -> Vec<SelftestCase> {
 }
 
 /// Lists the cases about verdicts of runs.
-fn runs() -> Vec<SelftestCase> {
+fn runs() -> Vec<Case> {
     vec![
         fails("broken", "A limit that no run can keep.", (1, "NEAR"), |bench| {
             let text = edited(&clean(SHORT)?, "limit = \"10 nmi\"", "limit = \"1e-9 nmi\"")?;
@@ -127,7 +127,7 @@ fn runs() -> Vec<SelftestCase> {
 }
 
 /// Lists the cases about altered recordings and evidence.
-fn files() -> Vec<SelftestCase> {
+fn files() -> Vec<Case> {
     vec![
         fails(
             "recording-cut",
@@ -196,7 +196,7 @@ fn files() -> Vec<SelftestCase> {
 }
 
 /// Lists the cases about verdicts of campaigns.
-fn campaigns() -> Vec<SelftestCase> {
+fn campaigns() -> Vec<Case> {
     vec![
         fails(
             "campaign-too-few",

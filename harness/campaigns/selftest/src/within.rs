@@ -1,7 +1,7 @@
 //! A case on a thread of its own, which is left when it takes too long.
 
 use crate::bench::CaseBench;
-use crate::case::SelftestCase;
+use crate::case::Case;
 use crate::error::CaseSetupError;
 use crate::judge::CaseOutcome;
 use octant_base::pool::STACK;
@@ -21,7 +21,7 @@ const ENDING: Duration = Duration::from_secs(5);
 pub(crate) fn outcome(
     program: &Path,
     folder: &Path,
-    case: &SelftestCase,
+    case: &Case,
     cancel: &AtomicBool,
 ) -> Result<CaseOutcome, CaseSetupError> {
     let (found, outcome) = channel();

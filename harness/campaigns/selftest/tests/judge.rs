@@ -1,8 +1,8 @@
 //! Cases judged: an alarm, a failure, a pass.
 
-use octant_requirements::Verdict;
 use octant_selftest::cases;
 use octant_selftest::judge::{CaseOutcome, CaseVerdict, Expectation, judge};
+use octant_verdict::Verdict;
 
 fn passing() -> CaseOutcome {
     CaseOutcome { status: Some(0), verdict: Some(Verdict::Pass), ..CaseOutcome::default() }

@@ -2,7 +2,7 @@
 
 use octant_selftest::judge::{CaseOutcome, CaseVerdict, Expectation, Known};
 use octant_selftest::record::CaseRecord;
-use octant_selftest::{COMPUTED_LIMIT, SelftestCase, cases, run};
+use octant_selftest::{COMPUTED_LIMIT, Case, cases, run};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -11,10 +11,10 @@ fn case(
     id: &'static str,
     limit: Duration,
     run: fn(&octant_selftest::bench::CaseBench<'_>) -> Outcome,
-) -> SelftestCase {
+) -> Case {
     let known = vec![Known { name: "one".to_owned(), value: 1.0, tolerance: 1e-9 }];
     let expectation = Expectation::Numbers { known, source: "its definition" };
-    SelftestCase { id, about: "A number.", expectation, limit, run }
+    Case { id, about: "A number.", expectation, limit, run }
 }
 
 type Outcome = Result<CaseOutcome, octant_selftest::error::CaseSetupError>;

@@ -1,7 +1,7 @@
 //! Verdict and exit status of a self-test.
 
 use octant_selftest::judge::CaseVerdict;
-use octant_selftest::record::{CaseRecord, SelftestRecord, verdict};
+use octant_selftest::record::{CaseRecord, Record, verdict};
 use std::time::SystemTime;
 
 fn case(verdict: CaseVerdict) -> CaseRecord {
@@ -33,8 +33,8 @@ fn an_alarm_is_the_worst_and_nothing_tried_is_no_pass() {
     }
     let program = std::env::current_exe().unwrap();
     let now = SystemTime::now();
-    let record = SelftestRecord::new(&program, now, 1, vec![case(Alarm)]).unwrap();
+    let record = Record::new(&program, now, 1, vec![case(Alarm)]).unwrap();
     assert_eq!((record.verdict, record.exit_code()), ("alarm", 5));
     assert!(record.text().contains("ALARM: what must not pass has passed"));
-    assert_eq!(SelftestRecord::new(&program, now, 2, vec![case(Pass)]).unwrap().exit_code(), 3);
+    assert_eq!(Record::new(&program, now, 2, vec![case(Pass)]).unwrap().exit_code(), 3);
 }

@@ -2,7 +2,7 @@
 
 use crate::answer::AnswerForm;
 use crate::journal::Journal;
-use crate::record::{AnswerWay, OperatorAct, OperatorRecord, SCHEMA};
+use crate::record::{Act, AnswerWay, OperatorRecord, SCHEMA};
 use crate::script::ScriptAnswer;
 use crate::step::{OnNo, OnTimeout, OperatorStep};
 use octant_base::attendance::Attendance;
@@ -178,7 +178,7 @@ impl Desk {
         question.state = QuestionState::Open { since: Instant::now(), overdue: false };
         question.sample = sample;
         let step = question.step.clone();
-        self.keep(state, OperatorAct::Asked, |record| {
+        self.keep(state, Act::Asked, |record| {
             record.expected = Some(step.form.expected());
             (record.step, record.ask, record.sample) = (Some(step.id), Some(step.ask), sample);
         });
@@ -193,7 +193,7 @@ impl Desk {
         }
         *overdue = true;
         let (id, follows, since) = (step.id.clone(), step.on_timeout, *since);
-        self.keep(state, OperatorAct::Overdue, |record| {
+        self.keep(state, Act::Overdue, |record| {
             (record.step, record.after_s) = (Some(id.clone()), Some(seconds(since)));
         });
         if follows == OnTimeout::Abort {
@@ -260,7 +260,7 @@ impl Desk {
         };
         let is_no = value == "no" && matches!(step.form, AnswerForm::Confirm | AnswerForm::YesNo);
         let follows = step.on_no;
-        self.keep(state, OperatorAct::Answered, |record| {
+        self.keep(state, Act::Answered, |record| {
             (record.step, record.value, record.unit) =
                 (Some(id.clone()), Some(value.clone()), unit);
             (record.by, record.way, record.sample) = (by.clone(), Some(way), sample);
@@ -300,9 +300,7 @@ impl Desk {
             return impossible("the run is held already".to_owned());
         }
         let by = name(by).map_err(DeskRefusal::Impossible)?;
-        self.keep(&mut state, OperatorAct::Held, |record| {
-            (record.by, record.way) = (by, Some(way))
-        });
+        self.keep(&mut state, Act::Held, |record| (record.by, record.way) = (by, Some(way)));
         state.held = Some(Instant::now());
         self.attendance.hold(true);
         Ok(())
@@ -320,7 +318,7 @@ impl Desk {
             return Err(DeskRefusal::Impossible("the run isn't held".to_owned()));
         };
         let sample = self.attendance.stands();
-        self.keep(&mut state, OperatorAct::Resumed, |record| {
+        self.keep(&mut state, Act::Resumed, |record| {
             (record.by, record.way, record.sample) = (by, Some(way), sample);
             record.after_s = Some(seconds(since));
         });
@@ -345,18 +343,13 @@ impl Desk {
     fn end(&self, state: &mut DeskState, reason: &str, by: Option<String>, way: Option<AnswerWay>) {
         let from = by.as_ref().map_or(String::new(), |by| format!(", {by}"));
         state.aborted.get_or_insert(format!("{reason}{from}"));
-        self.keep(state, OperatorAct::Aborted, |record| {
+        self.keep(state, Act::Aborted, |record| {
             (record.value, record.by, record.way) = (Some(reason.to_owned()), by, way);
         });
     }
 
     /// Writes a record, and ends the run if the disk doesn't take it: what isn't recorded doesn't count.
-    fn keep(
-        &self,
-        state: &mut DeskState,
-        act: OperatorAct,
-        fill: impl FnOnce(&mut OperatorRecord),
-    ) {
+    fn keep(&self, state: &mut DeskState, act: Act, fill: impl FnOnce(&mut OperatorRecord)) {
         let mut record = OperatorRecord {
             schema: SCHEMA,
             number: u32::try_from(state.records.len() + 1).unwrap_or(u32::MAX),
@@ -441,7 +434,7 @@ impl Desk {
                         QuestionState::Waiting => None,
                     },
                 );
-                let act = since.map_or(OperatorAct::NeverAsked, |_| OperatorAct::Unanswered);
+                let act = since.map_or(Act::NeverAsked, |_| Act::Unanswered);
                 reasons.push(match since {
                     Some(_) => format!("the run ended while step {id:?} was not answered"),
                     None => format!("the run ended before step {id:?} was asked"),

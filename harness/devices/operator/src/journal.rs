@@ -1,6 +1,6 @@
 //! `operator.jsonl` in the folder of a run: a record a line, each on the disk before it counts.
 
-use crate::record::{OperatorAct, OperatorRecord, SCHEMA};
+use crate::record::{Act, OperatorRecord, SCHEMA};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -102,8 +102,8 @@ pub fn open(records: &[OperatorRecord]) -> Vec<&OperatorRecord> {
     let mut open: Vec<&OperatorRecord> = Vec::new();
     for record in records {
         match record.act {
-            OperatorAct::Asked => open.push(record),
-            OperatorAct::Answered | OperatorAct::Unanswered => {
+            Act::Asked => open.push(record),
+            Act::Answered | Act::Unanswered => {
                 open.retain(|other| other.step != record.step);
             }
             _ => {}

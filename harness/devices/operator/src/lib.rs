@@ -23,5 +23,5 @@ pub mod step;
 
 pub use answer::{AnswerForm, AnswerKind};
 pub use desk::Desk;
-pub use record::{AnswerWay, OperatorAct, OperatorRecord};
+pub use record::{Act, AnswerWay, OperatorRecord};
 pub use step::{OnNo, OnTimeout, OperatorStep, StepParts};

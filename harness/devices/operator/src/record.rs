@@ -35,7 +35,7 @@ impl AnswerWay {
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum OperatorAct {
+pub enum Act {
     /// A question was asked.
     Asked,
     /// It was answered.
@@ -54,7 +54,7 @@ pub enum OperatorAct {
     NeverAsked,
 }
 
-impl OperatorAct {
+impl Act {
     /// Name in records.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -81,7 +81,7 @@ pub struct OperatorRecord {
     /// Host time, UTC, RFC 3339.
     pub at: String,
     /// What happened.
-    pub act: OperatorAct,
+    pub act: Act,
     /// Step of the scenario; `null` where the act belongs to none.
     pub step: Option<String>,
     /// The question, when it was asked.

@@ -1,7 +1,7 @@
 //! Files of answers, for runs in which nobody is asked: written by hand as TOML, or the journal of another run.
 
 use crate::journal;
-use crate::record::{OperatorAct, OperatorRecord};
+use crate::record::{Act, OperatorRecord};
 use crate::step::{OnNo, OperatorStep};
 use octant_base::names::suggestion;
 use serde::Deserialize;
@@ -60,8 +60,7 @@ pub fn read(path: &Path, steps: &[OperatorStep]) -> Result<Vec<ScriptAnswer>, Sc
 /// Checks that a journal has the questions of these steps: an answer to another one is none.
 fn same_questions(records: &[OperatorRecord], steps: &[OperatorStep]) -> Result<(), String> {
     for record in records {
-        let OperatorRecord { act: OperatorAct::Asked, step: Some(id), ask: Some(ask), .. } = record
-        else {
+        let OperatorRecord { act: Act::Asked, step: Some(id), ask: Some(ask), .. } = record else {
             continue;
         };
         if let Some(step) = steps.iter().find(|step| step.id == *id && step.ask != *ask) {
@@ -72,9 +71,7 @@ fn same_questions(records: &[OperatorRecord], steps: &[OperatorStep]) -> Result<
 }
 
 fn answer_of(record: OperatorRecord) -> Option<ScriptAnswer> {
-    let OperatorRecord {
-        act: OperatorAct::Answered, step: Some(id), value: Some(value), by, ..
-    } = record
+    let OperatorRecord { act: Act::Answered, step: Some(id), value: Some(value), by, .. } = record
     else {
         return None;
     };

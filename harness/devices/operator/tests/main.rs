@@ -10,8 +10,8 @@ use octant_faults::trigger::Trigger;
 use octant_operator::desk::DeskRefusal;
 use octant_operator::mailbox::{self, DeskReply, DeskRequest, Mailbox, MailboxError};
 use octant_operator::{
-    AnswerForm, AnswerKind, AnswerWay, Desk, OnNo, OnTimeout, OperatorAct, OperatorRecord,
-    OperatorStep, StepParts, journal, script,
+    Act, AnswerForm, AnswerKind, AnswerWay, Desk, OnNo, OnTimeout, OperatorRecord, OperatorStep,
+    StepParts, journal, script,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -46,7 +46,7 @@ fn asked(folder: &Path, step: OperatorStep) -> Desk {
     desk
 }
 
-fn acts(records: &[OperatorRecord]) -> Vec<OperatorAct> {
+fn acts(records: &[OperatorRecord]) -> Vec<Act> {
     records.iter().map(|record| record.act).collect()
 }
 
@@ -100,7 +100,7 @@ fn the_first_answer_counts_and_the_second_is_told() {
     }
     assert!(desk.attendance().is_closed(0));
     let records = desk.records_from(0);
-    assert_eq!(acts(&records), [OperatorAct::Asked, OperatorAct::Answered]);
+    assert_eq!(acts(&records), [Act::Asked, Act::Answered]);
     assert_eq!(records[1].sample, Some(7));
     assert_eq!(journal::read(folder.path()).unwrap(), records);
     assert_eq!(desk.attendance().told().len(), 2);
@@ -138,7 +138,7 @@ fn a_timeout_is_never_an_answer() {
         desk.look();
     }
     assert!(!desk.attendance().is_closed(0) && desk.aborted().is_none());
-    assert_eq!(acts(&desk.records_from(0)), [OperatorAct::Asked, OperatorAct::Overdue]);
+    assert_eq!(acts(&desk.records_from(0)), [Act::Asked, Act::Overdue]);
     desk.answer("door", "yes", "", AnswerWay::Page).unwrap();
     assert!(desk.attendance().is_closed(0));
 
@@ -183,7 +183,7 @@ fn what_nobody_asked_or_answered_is_named_at_the_end() {
         reasons[0].contains("\"a\" was not answered") && reasons[1].contains("\"b\" was asked"),
         "{reasons:?}"
     );
-    let all = [OperatorAct::Asked, OperatorAct::Unanswered, OperatorAct::NeverAsked];
+    let all = [Act::Asked, Act::Unanswered, Act::NeverAsked];
     assert_eq!(acts(&desk.records_from(0)), all);
     desk.look();
     assert!(desk.answer("a", "yes", "", AnswerWay::Page).is_err());

@@ -1,9 +1,10 @@
-//! Status and moves of a table by hand.
+//! Status, moves and the stop of a table by hand.
 
 use crate::following::rest;
+use crate::stop::{PAUSE, TIMES};
 use crate::{
-    Button, Driver, DriverSettings, Error, Supervisor, TableAxis, TableHost, TablePlan,
-    TableStatus, Turntable, on_panic, on_signals, open,
+    Button, Dialect, Driver, DriverSettings, Error, Supervisor, TableAxis, TableHost, TablePlan,
+    TablePort, TableStatus, Turntable, on_panic, on_signals, open, press,
 };
 
 /// Move by hand.
@@ -70,4 +71,51 @@ pub fn move_by_hand(
     let status = supervisor.status()?;
     supervisor.finish()?;
     Ok(status)
+}
+
+/// Stops a table by hand, whichever program drives it: through a driving program of this host, and on
+/// the port itself if that can be opened. Returns the ways that worked.
+///
+/// # Errors
+/// If none worked, with the reason.
+pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error> {
+    let mut stopped = Vec::new();
+    let mut failure = None;
+    match press(Some(name)) {
+        Ok(pressed) => {
+            stopped.extend(
+                pressed
+                    .iter()
+                    .filter(|pressed| pressed.written)
+                    .map(|pressed| format!("the program that drives {}", pressed.port)),
+            );
+        }
+        Err(error) => failure = Some(error),
+    }
+    // Both ways are used: stopping a table twice does no harm.
+    match open(name).and_then(|port| stop_line(port, name, dialect)) {
+        Ok(()) => stopped.push("its own port, without waiting for an answer".to_owned()),
+        Err(error) => failure = failure.or(Some(error)),
+    }
+    match failure {
+        Some(error) if stopped.is_empty() => Err(error),
+        _ => Ok(stopped),
+    }
+}
+
+/// Stops a table on a port that no program drives, by hand. Its replies are not waited for.
+///
+/// # Errors
+/// If the port doesn't accept the bytes.
+pub fn stop_line(mut port: impl TablePort, name: &str, dialect: &Dialect) -> Result<(), Error> {
+    let gone = |reason| Error::Gone { port: name.to_owned(), reason };
+    for time in 0..TIMES {
+        if time > 0 {
+            std::thread::sleep(PAUSE);
+        }
+        port.write_all(&dialect.emergency()).and_then(|()| port.flush()).map_err(gone)?;
+    }
+    // The bytes must be on their way before the port is closed.
+    std::thread::sleep(10 * PAUSE);
+    Ok(())
 }

@@ -45,7 +45,7 @@ pub struct TablePlan {
 
 /// Counts of the communication between a run and its table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Told {
+pub struct TableTraffic {
     /// Number of looks at the table.
     pub looks: u64,
     /// Number of set points sent.
@@ -80,7 +80,7 @@ pub struct Following {
 
 impl std::fmt::Debug for Following {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Following").field("told", &self.told()).finish_non_exhaustive()
+        f.debug_struct("Following").field("traffic", &self.traffic()).finish_non_exhaustive()
     }
 }
 
@@ -237,8 +237,8 @@ impl Following {
 
     /// Counts of the communication so far.
     #[must_use]
-    pub fn told(&self) -> Told {
-        Told {
+    pub fn traffic(&self) -> TableTraffic {
+        TableTraffic {
             looks: self.shared.looks.load(Ordering::Relaxed),
             commands: self.shared.commands.load(Ordering::Relaxed),
         }

@@ -22,6 +22,7 @@
 //!
 //! None of this replaces the hardware emergency stop button.
 
+mod axis;
 mod button;
 mod by_hand;
 mod dialect;
@@ -39,18 +40,19 @@ mod supervisor;
 mod table;
 mod track;
 
+pub use axis::{AxisStatus, TableAxis, TableStatus};
 pub use button::{Button, Pressed, press};
-pub use by_hand::{Move, look, move_by_hand};
+pub use by_hand::{Move, look, move_by_hand, stop_by_hand, stop_line};
 pub use dialect::Dialect;
 pub use driver::{Driver, DriverSettings};
 pub use error::Error;
 pub use follow::Follower;
-pub use following::{Following, TablePlan, Told, packed, unpacked};
+pub use following::{Following, TablePlan, TableTraffic, packed, unpacked};
 pub use guard::{FAREWELL, Guard, guard, run_guard};
 pub use limits::{AxisLimits, TableLimits};
 pub use port::{TABLE_PORT, TablePort, check_port, open, port_help};
 pub use shared::{GuestEnd, TableGuest, TableHost};
-pub use stop::{EmergencyStop, on_panic, on_signals, stop_all, stop_by_hand, stop_line};
+pub use stop::{EmergencyStop, on_panic, on_signals, stop_all};
 pub use supervisor::Supervisor;
-pub use table::{AxisStatus, TableAxis, TableStatus, Turntable};
+pub use table::Turntable;
 pub use track::{Track, TrackPoint};

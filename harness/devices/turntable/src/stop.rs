@@ -4,16 +4,16 @@
 //! the driver holds. All stops of the program are in a register, so that a panic in any thread and a
 //! signal trip them.
 
-use crate::{Dialect, Error, TablePort};
+use crate::Error;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError, TryLockError, Weak};
 use std::time::Duration;
 
 /// Number of times that the bytes are written: a line can lose some.
-const TIMES: u32 = 2;
+pub(crate) const TIMES: u32 = 2;
 /// Pause between two writes.
-const PAUSE: Duration = Duration::from_millis(20);
+pub(crate) const PAUSE: Duration = Duration::from_millis(20);
 /// Number of attempts while another thread writes them.
 const PATIENCE: u32 = 20;
 
@@ -155,51 +155,4 @@ pub fn on_panic() {
 /// If the signals can't be caught.
 pub fn on_signals() -> std::io::Result<()> {
     octant_base::interrupt::before_end(|| stop_all("the harness was ended by a signal"))
-}
-
-/// Stops a table by hand, whichever program drives it: through a driving program of this host, and on
-/// the port itself if that can be opened. Returns the ways that worked.
-///
-/// # Errors
-/// If none worked, with the reason.
-pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error> {
-    let mut stopped = Vec::new();
-    let mut failure = None;
-    match crate::press(Some(name)) {
-        Ok(pressed) => {
-            stopped.extend(
-                pressed
-                    .iter()
-                    .filter(|pressed| pressed.written)
-                    .map(|pressed| format!("the program that drives {}", pressed.port)),
-            );
-        }
-        Err(error) => failure = Some(error),
-    }
-    // Both ways are used: stopping a table twice does no harm.
-    match crate::open(name).and_then(|port| stop_line(port, name, dialect)) {
-        Ok(()) => stopped.push("its own port, without waiting for an answer".to_owned()),
-        Err(error) => failure = failure.or(Some(error)),
-    }
-    match failure {
-        Some(error) if stopped.is_empty() => Err(error),
-        _ => Ok(stopped),
-    }
-}
-
-/// Stops a table on a port that no program drives, by hand. Its replies are not waited for.
-///
-/// # Errors
-/// If the port doesn't accept the bytes.
-pub fn stop_line(mut port: impl TablePort, name: &str, dialect: &Dialect) -> Result<(), Error> {
-    let gone = |reason| Error::Gone { port: name.to_owned(), reason };
-    for time in 0..TIMES {
-        if time > 0 {
-            std::thread::sleep(PAUSE);
-        }
-        port.write_all(&dialect.emergency()).and_then(|()| port.flush()).map_err(gone)?;
-    }
-    // The bytes must be on their way before the port is closed.
-    std::thread::sleep(10 * PAUSE);
-    Ok(())
 }

@@ -76,7 +76,7 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
         });
     }
     assert!(compared > 10, "{compared}");
-    assert_eq!(table.told().commands, moves);
+    assert_eq!(table.traffic().commands, moves);
     assert_eq!(table.stopped(), None);
     table.finish().unwrap();
     assert!(rests(&server));
@@ -94,9 +94,9 @@ fn what_is_beyond_its_limits_stops_it() {
     wait_for("rest", || rests(&server));
     // Later set points move nothing.
     table.command(&set_point(0.0, 10.0));
-    let commands = table.told().commands;
+    let commands = table.traffic().commands;
     std::thread::sleep(Duration::from_millis(100));
-    assert_eq!(table.told().commands, commands);
+    assert_eq!(table.traffic().commands, commands);
 }
 
 #[test]

@@ -87,7 +87,7 @@ fn looks_have_their_times_and_silence_is_the_end() {
         );
         stream.write_all(line.as_bytes()).unwrap();
     }
-    while guest.told().looks < 2 {
+    while guest.traffic().looks < 2 {
         assert!(begun.elapsed() < octant_test_processes::HANGS, "the looks did not come");
         std::thread::sleep(Duration::from_millis(5));
     }

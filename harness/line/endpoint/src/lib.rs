@@ -5,6 +5,7 @@ mod any;
 mod fmu;
 mod in_process;
 mod live;
+mod open;
 mod powered;
 mod served;
 mod solution;
@@ -13,16 +14,15 @@ pub use any::AnyEndpoint;
 pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
 pub use live::{LiveEndpoint, configuration};
+pub use open::{check_live, open, open_with};
 pub use served::ServedCore;
 pub use solution::SolutionEndpoint;
 
 use octant_base::failing::{Failing, FailureKind};
-use octant_calibration::CoreConfig;
 use octant_calibration::covariance::SolutionCovariance;
 use octant_calibration::state_machine::CoreConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::wire::Wired;
-use octant_fmu_bind::OpenedFmus;
 use octant_fmu_bind::stepper::UseError;
 use octant_link::harness::SessionError;
 use octant_power::PowerError;
@@ -32,7 +32,6 @@ use octant_sample::further::FurtherEstimates;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Innovation, NavigationCovariance};
 use octant_sample::{Output, Parameters};
-use octant_scenario::{self as scenario, Scenario};
 use octant_trajectory::PairsError;
 use std::time::Duration;
 
@@ -289,54 +288,6 @@ impl Failing for EndpointOpenError {
             Self::Core(_) | Self::Solution(_) | Self::Load(_) | Self::OneMethod { .. } => {
                 FailureKind::Input
             }
-        }
-    }
-}
-
-/// Checks an endpoint without opening it, where it is a device: its port is opened only once, when the run begins,
-/// since some devices restart when it is opened. Returns whether it is one; any other is checked by [`open_with`].
-///
-/// # Errors
-/// As [`open`].
-pub fn check_live(scenario: &Scenario) -> Result<bool, EndpointOpenError> {
-    match scenario.endpoint.device() {
-        Some(live) => LiveEndpoint::check(scenario, live).map(|()| true),
-        None => Ok(false),
-    }
-}
-
-/// Opens the endpoint of a scenario with the core of `config`; `None` where it is the core in this
-/// process, which is called directly: see [`InProcess`].
-///
-/// # Errors
-/// If it can't be opened, or doesn't fit.
-pub fn open(
-    scenario: &Scenario,
-    config: &CoreConfig,
-) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
-    open_with(scenario, config, &OpenedFmus::default())
-}
-
-/// Opens as [`open`], with FMUs that are opened or get opened.
-///
-/// # Errors
-/// As [`open`].
-pub fn open_with(
-    scenario: &Scenario,
-    config: &CoreConfig,
-    fmus: &OpenedFmus,
-) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
-    if let scenario::SourceSpec::Solution(spec) = &scenario.source {
-        let endpoint = SolutionEndpoint::open(scenario, spec).map_err(Box::new)?;
-        return Ok(Some(endpoint.into()));
-    }
-    match &scenario.endpoint {
-        scenario::EndpointSpec::InProcess => Ok(None),
-        scenario::EndpointSpec::Fmu(fmu) => {
-            Ok(Some(FmuEndpoint::open(scenario, fmu, config, fmus)?.into()))
-        }
-        scenario::EndpointSpec::Live(live) => {
-            Ok(Some(LiveEndpoint::open(scenario, live, config)?.into()))
         }
     }
 }

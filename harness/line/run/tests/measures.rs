@@ -1,9 +1,9 @@
 //! Measures of requirements, in a summary that a run gave.
 
 use octant_base::control::Control;
-use octant_requirements::measures;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
+use octant_verdict::measures;
 
 /// Lists every number of a real summary by its path.
 fn numbers(path: &str, value: &serde_json::Value, all: &mut Vec<String>) {

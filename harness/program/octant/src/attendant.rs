@@ -198,9 +198,9 @@ impl Attendant {
 
     /// Prints a record on stderr.
     fn tell(&self, record: &OperatorRecord) {
-        use octant_operator::OperatorAct;
+        use octant_operator::Act;
         OperatorTerminal::clear();
-        if record.act != OperatorAct::Asked {
+        if record.act != Act::Asked {
             note!("octant: operator: {}", record.text());
             return;
         }

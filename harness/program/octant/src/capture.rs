@@ -7,7 +7,7 @@ use clap::Args;
 use octant_base::interrupt;
 use octant_link::Uri;
 use octant_link::port::{self, Bytes, Port};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use octant_wire::message::EndRole;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};

@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args};
 use octant_characterise::recording::RestingRecording;
 use octant_characterise::result::characterise;
 use octant_characterise::{page, text};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

@@ -9,7 +9,7 @@ use crate::{
     requirements, run, score, selftest, serve, smooth, turntable, verify, watch,
 };
 use clap::{FromArgMatches, Parser, Subcommand};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;

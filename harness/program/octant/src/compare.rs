@@ -7,10 +7,10 @@ use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
 use octant_base::display::{DisplayUnits, UnitChoice};
-use octant_requirements::Verdict;
 use octant_run::paired::{MethodSide, paired};
 use octant_scenario::{Method, Scenario};
 use octant_score::compare::MethodComparison;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

@@ -16,10 +16,10 @@ use crate::progress::watch_interrupts;
 use crate::terminal::{print, print_json};
 use confirm::{Confirmed, Runs, confirm};
 use files::{States, write_scenario};
-use octant_design::DesignSetup;
+use octant_design::Setup;
 use octant_design::report::SCHEMA;
 use octant_design::search::SearchProblem;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use options::{limits, measure, refuse_to_replace, rotations, threads};
 use outcome::{Outcome, Report};
 use searched::{DesignWork, design, failed};
@@ -53,7 +53,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let more: Vec<String> =
         duration.map(|time| format!("procedure.calibration.duration={time}")).into_iter().collect();
     let scenario = load(of_scenario, &more)?;
-    let setup = DesignSetup::of(&scenario).map_err(failed)?;
+    let setup = Setup::of(&scenario).map_err(failed)?;
     let measure = measure(minimise)?;
     let work = DesignWork {
         jobs: threads(*jobs),

@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::terminal::{note, print, print_json, write};
 use clap::Args;
-use octant_diff::side::DiffSide;
+use octant_diff::side::Side;
 use octant_diff::{CampaignDiff, is_campaign, page, runs, text};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -37,8 +37,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             (diff.equal, out.as_ref().map(|_| page::of_campaigns(&diff)))
         }
         (false, false) => {
-            let first = DiffSide::read(first).map_err(failed)?;
-            let second = DiffSide::read(second).map_err(failed)?;
+            let first = Side::read(first).map_err(failed)?;
+            let second = Side::read(second).map_err(failed)?;
             let diff = runs(&first, &second).map_err(failed)?;
             if *json {
                 print_json(&diff)?

@@ -6,7 +6,7 @@ use clap::Args;
 use octant_realtime::host::{Grade, HostFinding, look};
 use octant_realtime::latency::{LatencyResult, Trial, measure};
 use octant_realtime::schedule::Wish;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::time::Duration;

@@ -18,8 +18,6 @@ use octant_evidence::{
 use octant_fmu_bind::OpenedFmus;
 use octant_operator::OperatorRecord;
 use octant_report as report;
-use octant_requirements::Verdict;
-use octant_requirements::equipment::Day;
 use octant_run::MethodError;
 use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
@@ -27,6 +25,8 @@ use octant_run::{Ended, MethodRun, Prepared, Run, prepared, raw_counts};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Scenario, SourceSpec};
 use octant_score::junit::junit;
+use octant_verdict::Verdict;
+use octant_verdict::equipment::Day;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;

@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use crate::score::{scenario_of, true_parameters};
 use crate::terminal::{note, print};
 use clap::Args;
-use octant_export::{ExportChoice, ExportFormat, ExportTable, export};
-use octant_requirements::Verdict;
+use octant_export::{Choice, Format, Table, export};
 use octant_scenario::resolve::{DrawnValues, Seeded};
+use octant_verdict::Verdict;
 use octant_watch::place::RunPlace;
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ))
     })?;
     let out = out.clone().unwrap_or_else(|| default_out(&place, &recording, format));
-    let choice = ExportChoice { true_parameters: truth(&recording)?, recording, tables, every_ns };
+    let choice = Choice { true_parameters: truth(&recording)?, recording, tables, every_ns };
     let exported =
         export(&choice, format, &out, *force).map_err(|error| Failure::of(&error).failed())?;
     for words in &exported.notes {
@@ -61,16 +61,16 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(Verdict::Pass)
 }
 
-fn format(name: &str) -> Result<ExportFormat, Failure> {
-    ExportFormat::from_name(name).ok_or_else(|| {
-        let known = ExportFormat::ALL.iter().map(|format| format.name());
+fn format(name: &str) -> Result<Format, Failure> {
+    Format::from_name(name).ok_or_else(|| {
+        let known = Format::ALL.iter().map(|format| format.name());
         let known = octant_base::names::suggestion(name, known, "formats");
         Failure::input(format!("--to: unknown format {name:?}, {known}"))
     })
 }
 
 /// Returns the chosen tables in their order; for formats without tables what they are made from.
-fn tables(names: &[String], format: ExportFormat) -> Result<Vec<ExportTable>, Failure> {
+fn tables(names: &[String], format: Format) -> Result<Vec<Table>, Failure> {
     if !format.has_tables() {
         if !names.is_empty() {
             return Err(Failure::input(format!(
@@ -78,19 +78,19 @@ fn tables(names: &[String], format: ExportFormat) -> Result<Vec<ExportTable>, Fa
                 format.name()
             )));
         }
-        return Ok(vec![ExportTable::Navigation]);
+        return Ok(vec![Table::Navigation]);
     }
     let mut chosen = Vec::new();
     for name in names {
         let name = name.trim();
-        chosen.push(ExportTable::from_name(name).ok_or_else(|| {
-            let known = ExportTable::ALL.iter().map(|table| table.name());
+        chosen.push(Table::from_name(name).ok_or_else(|| {
+            let known = Table::ALL.iter().map(|table| table.name());
             let known = octant_base::names::suggestion(name, known, "tables");
             Failure::input(format!("--tables: unknown table {name:?}, {known}"))
         })?);
     }
-    let is_chosen = |table: &ExportTable| chosen.is_empty() || chosen.contains(table);
-    Ok(ExportTable::ALL.into_iter().filter(is_chosen).collect())
+    let is_chosen = |table: &Table| chosen.is_empty() || chosen.contains(table);
+    Ok(Table::ALL.into_iter().filter(is_chosen).collect())
 }
 
 fn period_ns(text: &str) -> Result<u64, Failure> {
@@ -104,7 +104,7 @@ fn period_ns(text: &str) -> Result<u64, Failure> {
 
 /// Names the output after the run: `runs/quick` becomes `quick-csv`, and its `baseline.mcap`
 /// `quick-baseline-csv`.
-fn default_out(place: &RunPlace, recording: &Path, format: ExportFormat) -> PathBuf {
+fn default_out(place: &RunPlace, recording: &Path, format: Format) -> PathBuf {
     let folder = place.folder().canonicalize().unwrap_or_else(|_| place.folder().to_owned());
     let name = |path: &Path| path.file_stem().map(|name| name.to_string_lossy().into_owned());
     let run = name(&folder);

@@ -1,7 +1,7 @@
 //! Failures of commands, with the exit status of each.
 
 use octant_base::failing::{Failing, FailureKind};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 /// Exit status of bad input or usage, which has no verdict.
 const INPUT: u8 = 2;

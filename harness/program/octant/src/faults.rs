@@ -9,8 +9,8 @@ use octant_base::names::suggestion;
 use octant_faults::catalogue::{Family, FaultKind, FaultParameter, Lasts};
 use octant_faults::connection::kinds as connection;
 use octant_faults::kinds;
-use octant_requirements::Verdict;
 use octant_scenario::fault_example;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! Ends of runs that are watched or served.
 
 use crate::failure::Failure;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use octant_watch::follow::{Follow, Stage};
 use octant_watch::plain;
 

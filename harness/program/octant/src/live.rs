@@ -15,7 +15,7 @@ mod with_server {
     use crate::progress::watch_interrupts;
     use crate::terminal::note;
     use octant_base::interrupt;
-    use octant_requirements::Verdict;
+    use octant_verdict::Verdict;
     use octant_watch::follow::Follow;
     use octant_watch::foxglove::{FoxgloveServeError, FoxgloveServer};
     use octant_watch::place::RunPlace;
@@ -120,7 +120,7 @@ mod with_server {
 #[cfg(not(feature = "foxglove"))]
 mod without_server {
     use crate::failure::Failure;
-    use octant_requirements::Verdict;
+    use octant_verdict::Verdict;
     use octant_watch::follow::Follow;
     use std::path::Path;
 

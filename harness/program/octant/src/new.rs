@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::grades::InstrumentGrade;
 use crate::terminal::{print, write};
 use clap::{Args, ValueEnum};
-use octant_requirements::Verdict;
 use octant_scenario::{FLICKER, Scenario};
+use octant_verdict::Verdict;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 

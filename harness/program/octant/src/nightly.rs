@@ -11,24 +11,26 @@ use clap::{Args, Subcommand};
 use octant_base::control::Control;
 use octant_base::display::UnitChoice;
 use octant_base::interrupt;
+use octant_campaign::execute::selection::CaseSelection;
 use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, Shard, execute};
+use octant_campaign::judge::status;
+use octant_campaign::merge;
+use octant_campaign::merge::results;
 use octant_campaign::plan::Plan;
-use octant_campaign::selection::CaseSelection;
 use octant_campaign::store::CampaignResults;
-use octant_campaign::{merge, results, status};
 use octant_evidence::manifest::{Machine, operator};
 use octant_nightly::accept::{self, Baseline, accept as accept_night};
-use octant_nightly::compare::{ChangeThresholds, NightSide, compare};
+use octant_nightly::compare::{Side, Thresholds, compare};
 use octant_nightly::history::History;
 use octant_nightly::night::{self, CampaignNight, Night, Program, SCHEMA, free_name};
 use octant_nightly::render::NightReport;
 use octant_nightly::suite::{self, SharedCase, SharedCases, SuiteOptions, SuiteResult};
 use octant_nightly::trend;
 use octant_nightly::units::TrendUnits;
-use octant_requirements::Verdict;
 use octant_run::many::judge_many;
 use octant_scenario::Scenario;
 use octant_scenario::suite::Suite;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -158,13 +160,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     night.ended = Some(octant_base::utc::seconds(SystemTime::now()));
     let rows = accept::rows(&folder, &night).map_err(Failure::bench)?;
-    let limits = ChangeThresholds { alpha: *alpha, least: *least };
+    let limits = Thresholds { alpha: *alpha, least: *least };
     let rerun = |campaign: &str, case: &str| {
         format!("octant campaign case {} {case}", folder.join(campaign).display())
     };
     let against = |baseline: &Baseline| {
-        let before = NightSide { night: &baseline.night, rows: &baseline.rows };
-        compare(before, NightSide { night: &night, rows: &rows }, limits, &rerun)
+        let before = Side { night: &baseline.night, rows: &baseline.rows };
+        compare(before, Side { night: &night, rows: &rows }, limits, &rerun)
     };
     let comparison = baseline.as_ref().map(against);
     let before = baseline.as_ref().map(|b| &b.night);

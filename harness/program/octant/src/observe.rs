@@ -17,11 +17,11 @@ use octant_observe::covariance::{AnalysisError, PredictedDrift, predict, state_n
 use octant_observe::ensemble::state_unit;
 use octant_observe::perfect::{self, PerfectError};
 use octant_observe::static_rank;
-use octant_requirements::Verdict;
 use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::{Method, MotionSpec, ParameterDistribution, Scenario};
 use octant_source::configure::configurations;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 

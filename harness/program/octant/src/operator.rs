@@ -6,8 +6,8 @@ use crate::terminal::{note, print};
 use clap::{Args, Subcommand};
 use octant_base::failing::{Failing, FailureKind};
 use octant_operator::mailbox::{self, DeskReply, DeskRequest};
-use octant_operator::{OperatorAct, journal};
-use octant_requirements::Verdict;
+use octant_operator::{Act, journal};
+use octant_verdict::Verdict;
 use octant_watch::place::RunPlace;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -142,8 +142,8 @@ fn status(run: &Path) -> Result<Verdict, Failure> {
     for asked in journal::open(&records) {
         text += &format!("open: {}\n", asked.step.as_deref().unwrap_or_default());
     }
-    let of_hold = |act: &OperatorAct| matches!(act, OperatorAct::Held | OperatorAct::Resumed);
-    let is_held = records.iter().map(|record| record.act).rfind(of_hold) == Some(OperatorAct::Held);
+    let of_hold = |act: &Act| matches!(act, Act::Held | Act::Resumed);
+    let is_held = records.iter().map(|record| record.act).rfind(of_hold) == Some(Act::Held);
     text += match (goes_on, is_held) {
         (false, _) => "the run doesn't go on\n",
         (true, true) => "the run is held\n",

@@ -3,24 +3,15 @@
 use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 
+mod needs;
 #[cfg(not(feature = "object-storage"))]
 #[path = "place/no_object_storage.rs"]
 mod object_storage;
 #[cfg(feature = "object-storage")]
 mod object_storage;
 
+pub(crate) use needs::Needs;
 pub(crate) use object_storage::{StoredCampaign, push, run_part};
-
-/// Files of a campaign that a command needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Needs {
-    /// The plan and its files.
-    Plan,
-    /// These and the results.
-    Results,
-    /// Everything, tables and report too.
-    All,
-}
 
 /// Place of a campaign.
 #[derive(Debug)]

@@ -130,7 +130,7 @@ pub(super) fn watch_interrupts() {
     let _ = interrupt::watch(|| {
         octant_turntable::stop_all("the program was interrupted");
         octant_power::write_all_ends();
-        std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
+        std::process::exit(i32::from(octant_verdict::Verdict::Error.exit_code()));
     });
 }
 
@@ -138,5 +138,5 @@ pub(super) fn watch_interrupts() {
 /// which tells the other that there is no result.
 pub(super) fn leave_interrupts_to(parent: u32) -> std::io::Result<()> {
     interrupt::leave();
-    octant_campaign::process::end_with(parent)
+    octant_campaign::execute::process::end_with(parent)
 }

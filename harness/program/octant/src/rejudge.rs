@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::Args;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

@@ -5,11 +5,11 @@ use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_base::number::counted;
 use octant_endpoint::{AnyEndpoint, InProcess};
-use octant_requirements::Verdict;
 use octant_run::replayed::replay;
 use octant_scenario::Scenario;
 use octant_source::Replay;
 use octant_source::configure::configurations;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 

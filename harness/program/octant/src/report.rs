@@ -5,18 +5,17 @@ use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
 use octant_base::display::UnitChoice;
+use octant_base::whole_file::keep;
 use octant_calibration::table::CalibrationTable;
-use octant_campaign::keep;
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::Dispositions;
-use octant_evidence::inside::SUMMARY;
 use octant_evidence::manifest::{FILE_NAME as MANIFEST, shell_line};
+use octant_evidence::statements::SUMMARY;
 use octant_evidence::{Manifest, ManifestError, discrepancy};
 use octant_faults::rule::UnitEvent;
 use octant_recorder::Event;
 use octant_recorder::reader::{Epochs, Recording};
 use octant_report::{ReportData, ReportProvenance, SolutionSeries};
-use octant_requirements::Verdict;
 use octant_run::observers::done::PlannedWork;
 use octant_run::observers::filtered::FilteredSeries;
 use octant_run::{Observers, unit};
@@ -28,6 +27,7 @@ use octant_score::numerics::differs;
 use octant_score::rederive;
 use octant_score::summary::Summary;
 use octant_source::Epoch;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 /// Recording of the baseline, in the folder of a run.

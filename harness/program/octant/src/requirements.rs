@@ -7,11 +7,11 @@ use crate::failure::Failure;
 use crate::terminal::{note, print, print_json};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
-use octant_campaign::requirements::Measures;
+use octant_campaign::plan::requirements::Measures;
 use octant_requirements::Imported;
-use octant_requirements::Verdict;
 use octant_requirements::exchange::{self, ExchangeError};
-use octant_requirements::file::Checker as _;
+use octant_verdict::Verdict;
+use octant_verdict::file::Checker as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 

@@ -11,8 +11,8 @@ use crate::given::GivenOptions;
 use clap::Args;
 use octant_base::display::UnitChoice;
 use octant_evidence::{Existing, RunFolder};
-use octant_requirements::Verdict;
 use octant_scenario::FilePlaces;
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

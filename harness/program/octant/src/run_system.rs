@@ -13,9 +13,9 @@ use octant_cosim::run::{PrepareError, PreparedSystem, ROWS_MAX, Request};
 use octant_cosim::summary::{FmuResult, SystemEnded};
 use octant_evidence::{FmuFacts, Manifest, RunFacts, RunFolder};
 use octant_fmu_host::instance::ProcessPlace;
-use octant_requirements::Verdict;
 use octant_scenario::quantity::{UnitDimension, parse};
 use octant_score::junit::junit_of;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 

@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use crate::run_request::RunRequest;
 use crate::source_uri::from_here;
 use clap::Args;
-use octant_requirements::Verdict;
 use octant_scenario::{FilePlaces, Scenario, SourceSpec};
 use octant_trajectory::{TrajectorySurvey, point::SECOND_NS};
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

@@ -5,7 +5,7 @@ use crate::followed::{unreadable, verdict};
 use crate::progress::watch_interrupts;
 use crate::terminal::print;
 use octant_base::interrupt;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use octant_watch::dashboard::{self, Page};
 use octant_watch::follow::Follow;
 use octant_watch::plain;

@@ -12,19 +12,19 @@ use octant_base::failing::Failing;
 use octant_base::names::suggestion;
 use octant_base::pool::processors;
 use octant_faults::catalogue::FaultKind;
-use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_search::bench::SearchBench;
 use octant_search::derived::{RunTimes, derived, searchable};
 use octant_search::earlier::{EarlierFound, EarlierSearch};
-use octant_search::error::FaultSearchError;
+use octant_search::error::SearchError;
 use octant_search::found::{FoundFault, SearchFound, worst};
 use octant_search::minimal::minimal;
 use octant_search::page::render;
-use octant_search::search::{SearchPlan, SearchStrategy, search};
-use octant_search::space::SearchSpace;
+use octant_search::search::{SearchPlan, Strategy, search};
+use octant_search::space::Space;
 use octant_search::space_file;
-use octant_search::trial::{FaultTrial, TrialEffect, TrialResult};
+use octant_search::trial::{Trial, TrialEffect, TrialResult};
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -144,8 +144,8 @@ fn searched(
         })?;
     }
     let strategy = match strategy {
-        StrategyName::Guided => SearchStrategy::Guided,
-        StrategyName::Latin => SearchStrategy::Latin,
+        StrategyName::Guided => Strategy::Guided,
+        StrategyName::Latin => Strategy::Latin,
     };
     let plan = SearchPlan {
         strategy,
@@ -158,7 +158,7 @@ fn searched(
     let journal = out.as_ref().map(|folder| folder.join("search.jsonl"));
     let bar = CaseBar::new("search", plan.runs, jobs, plan.enough.is_some());
     let mut told = 0;
-    let mut tell = |trials: &[FaultTrial]| {
+    let mut tell = |trials: &[Trial]| {
         trials[told..].iter().filter(|trial| trial.is_run()).for_each(|_| bar.ended(None, false));
         told = trials.len();
     };
@@ -183,7 +183,7 @@ fn searched(
 fn asked(
     (of_scenario, kinds, space): (&Path, &[String], Option<&Path>),
     scenario: &Scenario,
-) -> Result<SearchSpace, Failure> {
+) -> Result<Space, Failure> {
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let Some(samples) = scenario.samples() else {
         return Err(Failure::input(format!(
@@ -207,7 +207,7 @@ fn asked(
 fn earlier(
     folder: Option<&Path>,
     strategy: StrategyName,
-    space: &SearchSpace,
+    space: &Space,
 ) -> Result<Option<EarlierSearch>, Failure> {
     let Some(folder) = folder else { return Ok(None) };
     if let StrategyName::Latin = strategy {
@@ -233,9 +233,9 @@ fn the_kind(name: &str) -> Result<&'static FaultKind, Failure> {
 /// The part of a space that the scenario can have. A file has to be possible as a whole.
 fn possible(
     bench: &SearchBench,
-    asked: SearchSpace,
+    asked: Space,
     file: Option<&Path>,
-) -> Result<(SearchSpace, Vec<(String, String)>), Failure> {
+) -> Result<(Space, Vec<(String, String)>), Failure> {
     if let Some(file) = file {
         return match bench.impossible(&asked) {
             None => Ok((asked, Vec::new())),
@@ -249,7 +249,7 @@ fn possible(
     let (space, left_out) = bench.possible(&asked);
     match left_out.first() {
         Some((_, reason)) if space.forms.is_empty() => {
-            Err(failure(FaultSearchError::EmptySpace(reason.clone())))
+            Err(failure(SearchError::EmptySpace(reason.clone())))
         }
         _ => Ok((space, left_out)),
     }
@@ -266,8 +266,8 @@ struct SearchTarget<'a> {
 fn conclude(
     target: &SearchTarget<'_>,
     bench: &SearchBench,
-    space: &SearchSpace,
-    trials: &[FaultTrial],
+    space: &Space,
+    trials: &[Trial],
     mut found: SearchFound,
     control: &Control,
 ) -> Result<Verdict, Failure> {
@@ -284,7 +284,7 @@ fn conclude(
         let again = bench.again(&text, control).map_err(failure)?;
         if again != smaller.trial.result {
             let words = smaller.trial.candidate.words(&smaller.space);
-            return Err(failure(FaultSearchError::Differs(format!(
+            return Err(failure(SearchError::Differs(format!(
                 "{words}: undivided it had another effect"
             ))));
         }
@@ -317,8 +317,8 @@ fn conclude(
 }
 
 /// A fail where something harmful went unnoticed; a pass needs runs whose faults acted.
-fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
-    let acted = trials.iter().filter_map(FaultTrial::effect).any(TrialEffect::is_judged);
+fn verdict(found: &SearchFound, trials: &[Trial]) -> Verdict {
+    let acted = trials.iter().filter_map(Trial::effect).any(TrialEffect::is_judged);
     let broken = trials.iter().any(|trial| matches!(trial.result, TrialResult::Broken(_)));
     match found.missed {
         0 if !acted => {
@@ -339,8 +339,8 @@ fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
     }
 }
 
-fn failure(error: FaultSearchError) -> Failure {
-    if let FaultSearchError::Method(error) = error {
+fn failure(error: SearchError) -> Failure {
+    if let SearchError::Method(error) = error {
         return Failure::from(error).failed();
     }
     Failure::of_kind(error.kind(), format!("failed to search: {error}"))

@@ -7,10 +7,10 @@ use crate::terminal::print;
 use clap::Args;
 use octant_base::interrupt;
 use octant_campaign::plan;
-use octant_requirements::Verdict;
 use octant_selftest::judge::CaseVerdict;
-use octant_selftest::record::{CaseRecord, FILE_NAME, SelftestRecord, write};
+use octant_selftest::record::{CaseRecord, FILE_NAME, Record, write};
 use octant_selftest::{answers, cases, run};
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::SystemTime;
@@ -78,8 +78,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let done = run(&program, &cases, jobs, interrupt::flag(), &tell);
     bar.finish();
     let failed = |reason: &dyn std::fmt::Display| Failure::bench(reason).failed();
-    let record =
-        SelftestRecord::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
+    let record = Record::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
     let record = record.map_err(|error| failed(&error))?;
     let json = record.to_json().map_err(|error| failed(&format!("write the result: {error}")))?;
     for path in out.iter().chain(&of_campaign) {
@@ -91,7 +90,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 /// Returns the verdict of the exit status; a status that isn't a verdict's becomes a failure with a
 /// message.
-fn conclude(record: &SelftestRecord) -> Result<Verdict, Failure> {
+fn conclude(record: &Record) -> Result<Verdict, Failure> {
     let verdict = Verdict::ALL.into_iter().find(|v| v.exit_code() == record.exit_code());
     verdict.ok_or_else(|| Failure {
         status: record.exit_code(),

@@ -9,9 +9,9 @@ use octant_endpoint::ServedCore;
 use octant_link::Uri;
 use octant_link::device::{Notice, serve};
 use octant_realtime::schedule::{self, Wish};
-use octant_requirements::Verdict;
 use octant_run::{MethodError, SetupError, core_of};
 use octant_scenario::{Method, Scenario};
+use octant_verdict::Verdict;
 use octant_wire::message::StepPacing;
 use std::path::{Path, PathBuf};
 

@@ -13,7 +13,6 @@ use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
 use octant_endpoint::InProcess;
 use octant_observe::covariance::state_name;
 use octant_observe::ensemble::state_unit;
-use octant_requirements::Verdict;
 use octant_run::smoothed::repeat_calibration;
 use octant_run::smoothing_doubts::SmoothingDoubts;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
@@ -22,6 +21,7 @@ use octant_smoother::constancy::{self, ConstancyFinding, NODES_MAX, ParameterCha
 use octant_smoother::refusal::SmootherError;
 use octant_source::Replay;
 use octant_source::configure::configurations;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -8,8 +8,8 @@ use clap::Args;
 use octant_base::control::Control;
 use octant_campaign::sweep::{SweepAxis, SweepError, cells_of, indices, sweep};
 use octant_campaign_pages::sweep as sweep_page;
-use octant_requirements::Verdict;
 use octant_scenario::Scenario;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 /// Maximum number of cells of a grid: each is a run.

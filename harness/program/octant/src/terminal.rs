@@ -71,7 +71,7 @@ pub(crate) fn write(path: &std::path::Path, contents: impl AsRef<[u8]>) -> Resul
     let written = if is_other {
         std::fs::write(path, contents)
     } else {
-        octant_campaign::keep(path, contents.as_ref())
+        octant_base::whole_file::keep(path, contents.as_ref())
     };
     written.map_err(|error| Failure::bench(format!("failed to write {}: {error}", path.display())))
 }

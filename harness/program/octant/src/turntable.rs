@@ -4,13 +4,13 @@ use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, print_json};
 use clap::{Args, Subcommand, ValueEnum};
-use octant_requirements::Verdict;
 use octant_scenario::{Scenario, TableDriver, UnitDimension, quantity_of};
 use octant_turntable::simulate::listen;
 use octant_turntable::{
     AxisLimits, Dialect, DriverSettings, Error, Move, TableAxis, TableLimits, TablePlan,
     TableStatus, check_port, look, move_by_hand, press, run_guard, stop_by_hand,
 };
+use octant_verdict::Verdict;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

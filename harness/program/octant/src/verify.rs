@@ -12,10 +12,10 @@ use octant_evidence::attestation;
 use octant_evidence::disposition;
 use octant_evidence::ended::is_partial;
 use octant_evidence::files;
-use octant_evidence::inside::{self, Inside};
 use octant_evidence::manifest::{self, FolderDifference, Manifest};
 use octant_evidence::signature;
-use octant_requirements::Verdict;
+use octant_evidence::statements::{self, FolderStatements};
+use octant_verdict::Verdict;
 use serde::Serialize;
 use sha2::Digest;
 use std::path::{Path, PathBuf};
@@ -91,11 +91,11 @@ impl Expected {
     }
 
     /// Describes why a folder doesn't have it.
-    fn missed(&self, inside: &Inside) -> Option<String> {
+    fn missed(&self, stated: &FolderStatements) -> Option<String> {
         let none = || "none".to_owned();
         let (what, found, expected, met) = match self {
             Self::Scenario(title) => {
-                let found = inside.title.clone();
+                let found = stated.title.clone();
                 let met = found.as_ref() == Some(title);
                 (
                     "scenario",
@@ -105,12 +105,12 @@ impl Expected {
                 )
             }
             Self::Seed(seed) => {
-                let found = inside.seed.map_or_else(none, |seed| seed.to_string());
-                ("seed", found, seed.to_string(), inside.seed == Some(*seed))
+                let found = stated.seed.map_or_else(none, |seed| seed.to_string());
+                ("seed", found, seed.to_string(), stated.seed == Some(*seed))
             }
             Self::Run(hash) => {
-                let met = inside.run.as_ref().is_some_and(|found| found.starts_with(hash));
-                ("run", inside.run.clone().unwrap_or_else(none), hash.clone(), met)
+                let met = stated.run.as_ref().is_some_and(|found| found.starts_with(hash));
+                ("run", stated.run.clone().unwrap_or_else(none), hash.clone(), met)
             }
         };
         (!met).then(|| format!("another {what}: found {found}, expected {expected}"))
@@ -198,13 +198,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let second = second((key, second_key), folder, &manifest, &mut differences)?;
     // A folder with a FIFO in it is reported, and its contents are not opened.
     let opened = !found.iter().any(|difference| matches!(difference, FolderDifference::NoFile(..)));
-    let inside = match &manifest.campaign {
-        _ if !opened => Inside::default(),
-        Some(facts) => campaign::inside::look(folder, facts),
-        None => inside::of_run(folder, &manifest),
+    let stated = match &manifest.campaign {
+        _ if !opened => FolderStatements::default(),
+        Some(facts) => campaign::judge::consistency::look(folder, facts),
+        None => statements::of_run(folder, &manifest),
     };
-    differences.extend(inside.contradictions.iter().cloned());
-    differences.extend(expect.iter().filter_map(|expected| expected.missed(&inside)));
+    differences.extend(stated.contradictions.iter().cloned());
+    differences.extend(expect.iter().filter_map(|expected| expected.missed(&stated)));
     let whole = differences.is_empty();
     // A folder that isn't whole is neither run again nor attested.
     let reexecuted = match count.filter(|_| whole) {
@@ -218,7 +218,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         })?;
         let sha256: String =
             sha2::Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect();
-        let statement = attestation::statement(&manifest, &sha256, &inside);
+        let statement = attestation::statement(&manifest, &sha256, &stated);
         crate::terminal::write(out, format!("{statement:#}\n"))?;
     }
     let found = Found {
@@ -226,12 +226,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         whole,
         files: manifest.files.len(),
         differences,
-        verdict: inside.verdict,
-        reasons: inside.reasons,
-        numerics: inside.numerics,
-        scenario: inside.title,
-        seed: inside.seed,
-        run: inside.run,
+        verdict: stated.verdict,
+        reasons: stated.reasons,
+        numerics: stated.numerics,
+        scenario: stated.title,
+        seed: stated.seed,
+        run: stated.run,
         reexecuted,
         signed_by,
         second_signed_by: second.signed_by,

@@ -6,7 +6,7 @@ use crate::followed::{unreadable, verdict};
 use crate::terminal::note;
 use crate::terminal::print;
 use clap::Args;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use octant_watch::follow::{Follow, Stage};
 use octant_watch::place::RunPlace;
 use octant_watch::plain;

@@ -3,15 +3,16 @@
 
 use crate::common::program::{OCTANT, program};
 use crate::common::results as stored;
-use octant_campaign::case;
+use octant_campaign::execute::case;
+use octant_campaign::execute::selection::CaseSelection;
 use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute};
+use octant_campaign::judge::status;
+use octant_campaign::merge::results;
 use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::{Case, Plan, PlanWritten};
-use octant_campaign::selection::CaseSelection;
 use octant_campaign::store::{CampaignResults, StoreOutcome, keep};
 use octant_campaign::table::{ColumnValue, ExistingTable};
-use octant_campaign::{results, status};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -499,8 +500,8 @@ fn it_ends_where_enough_is_known_wherever_it_ran() {
 
 #[test]
 fn a_rule_counts_what_is_not_shown_as_broken() {
-    use octant_campaign::independence::Shown;
-    use octant_campaign::stop::{StopDecision, decide};
+    use octant_campaign::judge::independence::Shown;
+    use octant_campaign::judge::stop::{StopDecision, decide};
     let stop = "[stop]\nrequirement = \"NAV-1\"\nevery = 10\n";
     let plan =
         Bench::new(&format!("{CAMPAIGN}{stop}").replace("replicates = 3", "replicates = 200"))

@@ -2,8 +2,8 @@
 
 use crate::common::program::program;
 use octant_base::control::Control;
-use octant_campaign::alike::{MOST, groups, run_alike};
-use octant_campaign::case;
+use octant_campaign::execute::alike::{MOST, groups, run_alike};
+use octant_campaign::execute::case;
 use octant_campaign::plan::{Case, Plan};
 use octant_campaign::store::CampaignResults;
 use std::collections::BTreeSet;

@@ -10,7 +10,7 @@
 use crate::campaign_report::bench::{Bench, drawn};
 use crate::common::program::program;
 use octant_base::control::Control;
-use octant_campaign::case;
+use octant_campaign::execute::case;
 use octant_campaign::plan::{Case, Plan};
 use octant_campaign::store::{keep_in, writer::PartWriter};
 use octant_test_processes::start;

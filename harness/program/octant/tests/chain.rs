@@ -4,11 +4,12 @@
 use crate::campaign_report::bench::{Bench, CAMPAIGN, check};
 use crate::common::program::{ends, octant_in, program};
 use crate::common::results as stored;
-use octant_campaign::case;
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case;
+use octant_campaign::merge;
+use octant_campaign::merge::results;
 use octant_campaign::plan::Plan;
 use octant_campaign::table::{ColumnValue as Cell, ColumnValues, ExistingTable, write};
-use octant_campaign::{merge, results};
 use octant_test_processes::command;
 use serde_json::{Value, json};
 use std::borrow::Cow;

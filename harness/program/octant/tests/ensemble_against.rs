@@ -6,12 +6,11 @@
 use crate::common::program::{ended, octant_in};
 use octant_base::display::DisplayUnits;
 use octant_campaign::against::{Against, RUNS_MIN, Selection, against};
-use octant_campaign::case::{self, CaseResult};
+use octant_campaign::execute::case::{self, CaseResult};
 use octant_campaign::plan::Plan;
 use octant_observe::ensemble::{Ensemble, ensemble};
 use octant_random::normal::Ziggurat;
 use octant_random::stream::{Phase, key};
-use octant_requirements::Verdict;
 use octant_sample::parameters::NAMES;
 use octant_scenario::{Method, Scenario};
 use octant_score::judge::judge;
@@ -19,6 +18,7 @@ use octant_score::summary::{
     CalibrationScore, ErrorScore, HealthCounts, HeightChannel, NavigationScore, ParameterScore,
     RadialScore, SCHEMA, Summary,
 };
+use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use tempfile::TempDir;
 

@@ -11,7 +11,6 @@ use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Receipt, Station, Values};
 use octant_recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, stream_hash};
 use octant_recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
-use octant_requirements::Verdict;
 use octant_run::bench::closed::Closed;
 use octant_run::observers::done::PlannedWork;
 use octant_run::{
@@ -24,6 +23,7 @@ use octant_scenario::{Method, Scenario};
 use octant_score::summary::results;
 use octant_source::configure::configurations;
 use octant_source::{Epoch, PlantSource, Replay, Source};
+use octant_verdict::Verdict;
 use std::path::Path;
 
 const LOCKSTEP: &str = include_str!("../../../../fixtures/scenarios/lockstep.toml");

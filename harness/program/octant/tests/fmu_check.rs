@@ -6,7 +6,7 @@ use crate::common::program::{OCTANT, program};
 use octant_fmu_build as build;
 use octant_fmu_check::load::load;
 use octant_fmu_check::rules::Severity;
-use octant_fmu_check::{CheckReport, check, show};
+use octant_fmu_check::{Report, check, show};
 use octant_fmu_host::instance::OpenOptions;
 use octant_test_processes::command;
 use std::io::Write;
@@ -73,7 +73,7 @@ fn stepped(fmu: &Path) -> Vec<String> {
 
 /// Lists findings worse than notes, except for functions that these FMUs don't need: rule and found
 /// content.
-fn found(report: &CheckReport) -> Vec<String> {
+fn found(report: &Report) -> Vec<String> {
     report
         .findings
         .iter()

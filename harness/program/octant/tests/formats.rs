@@ -4,20 +4,22 @@
 
 use crate::common::program::program;
 use octant_calibration::table::CalibrationTable;
-use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case::CaseResult;
+use octant_campaign::judge::status;
+use octant_campaign::merge;
 use octant_campaign::plan::Plan;
+use octant_campaign::plan::requirements;
 use octant_campaign::store::{CampaignResults, file};
 use octant_campaign::table::{ColumnKind, ColumnValue, ExistingTable};
-use octant_campaign::{merge, requirements, status};
 use octant_dispatch::bundle::unpack::unpack;
 use octant_evidence::manifest::Manifest;
 use octant_evidence::signature::{self, SigningKey};
 use octant_recorder::reader::{Item, Recording};
-use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::Campaign;
 use octant_score::summary::Summary;
+use octant_verdict::Verdict;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
 //! `octant requirements measures`: what it lists is what readers of requirements take.
 
 use crate::common::program::{ended, ends, octant_in};
-use octant_requirements::Comparison;
-use octant_requirements::signed::one_sided;
 use octant_scenario::Scenario;
+use octant_verdict::Comparison;
+use octant_verdict::signed::one_sided;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;

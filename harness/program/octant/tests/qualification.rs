@@ -1,8 +1,8 @@
 //! Qualification kit: every operational requirement names existing tests, every case of the
 //! self-test verifies one, and the trace is up to date.
 
-use octant_campaign::requirements::load;
-use octant_requirements::requirement::{Requirement, Requirements, Verification};
+use octant_campaign::plan::requirements::load;
+use octant_verdict::requirement::{Requirement, Requirements, Verification};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use crate::campaign_report::bench::{Bench, CAMPAIGN};
 use crate::chain::{TOO_NEAR, run};
 use crate::common::program::{octant_in, program};
 use crate::common::results;
-use octant_campaign::case;
+use octant_campaign::execute::case;
 use octant_score::numerics::NUMERICS;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

@@ -93,7 +93,7 @@ fn a_part_is_run_to_its_first_failure_alone() {
 #[test]
 fn a_program_that_passes_everything_is_an_alarm() {
     use octant_selftest::judge::{CaseVerdict, Expectation};
-    use octant_selftest::record::SelftestRecord;
+    use octant_selftest::record::Record;
     use octant_selftest::{cases, run};
     use std::os::unix::fs::PermissionsExt;
     use std::sync::atomic::AtomicBool;
@@ -113,6 +113,6 @@ fn a_program_that_passes_everything_is_an_alarm() {
     for case in &found {
         assert_eq!(case.verdict, CaseVerdict::Alarm, "{}: {}", case.id, case.found);
     }
-    let record = SelftestRecord::new(&liar, started, some.len(), found).unwrap();
+    let record = Record::new(&liar, started, some.len(), found).unwrap();
     assert_eq!((record.verdict, record.exit_code()), ("alarm", 5));
 }

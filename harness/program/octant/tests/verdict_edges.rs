@@ -2,11 +2,11 @@
 //! results within the uncertainty of a reference.
 
 use crate::common::program::program;
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Comparison, Verdict};
 use octant_score::judge::judge_by;
 use octant_score::rederive;
 use octant_score::summary::Summary;
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{Comparison, Verdict};
 use std::path::Path;
 
 const SCENARIO: &str = "schema = 1

@@ -3,9 +3,9 @@
 //! <https://github.com/in-toto/attestation/blob/main/spec/predicates/test-result.md>. The statement
 //! isn't signed here: the user's attestation tool wraps it in its envelope.
 
-use super::inside::Inside;
 use super::manifest::{FILE_NAME, Manifest};
-use octant_requirements::Verdict;
+use super::statements::FolderStatements;
+use octant_verdict::Verdict;
 use serde_json::{Value, json};
 
 /// Returns the result of a test in the predicate's terms. A verdict without evidence is never a
@@ -22,7 +22,7 @@ pub const fn result(verdict: Option<Verdict>) -> &'static str {
 /// Builds the statement about a folder that was verified; `manifest_sha256` is the SHA-256 of its
 /// manifest.
 #[must_use]
-pub fn statement(manifest: &Manifest, manifest_sha256: &str, inside: &Inside) -> Value {
+pub fn statement(manifest: &Manifest, manifest_sha256: &str, stated: &FolderStatements) -> Value {
     let described = |name: &str, sha256: &str| json!({"name": name, "digest": {"sha256": sha256}});
     let own = described(FILE_NAME, manifest_sha256);
     let files = manifest.files.iter().map(|file| described(&file.path, &file.sha256));
@@ -36,7 +36,7 @@ pub fn statement(manifest: &Manifest, manifest_sha256: &str, inside: &Inside) ->
         .map(|file| described(&file.path, &file.sha256))
         .collect();
     let tests = |wanted: &str| -> Vec<&str> {
-        let found = inside.checks.iter().filter(|(_, verdict)| result(Some(*verdict)) == wanted);
+        let found = stated.checks.iter().filter(|(_, verdict)| result(Some(*verdict)) == wanted);
         found.map(|(id, _)| id.as_str()).collect()
     };
     json!({
@@ -44,7 +44,7 @@ pub fn statement(manifest: &Manifest, manifest_sha256: &str, inside: &Inside) ->
         "subject": std::iter::once(own).chain(files).collect::<Vec<_>>(),
         "predicateType": "https://in-toto.io/attestation/test-result/v0.1",
         "predicate": {
-            "result": result(inside.verdict),
+            "result": result(stated.verdict),
             "configuration": configuration,
             "passedTests": tests("PASSED"),
             "warnedTests": tests("WARNED"),

@@ -4,9 +4,9 @@
 //! An id is derived from the discrepancy and its cases: the same discrepancy has the same id in
 //! every report, and one more failing case makes a new one, which has no disposition yet.
 
-use octant_requirements::Verdict;
 use octant_score::judge;
 use octant_score::summary::Summary;
+use octant_verdict::Verdict;
 use serde::Serialize;
 
 /// Finding that isn't a pass.

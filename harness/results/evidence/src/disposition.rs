@@ -212,12 +212,11 @@ fn entry(found: &Discrepancy) -> String {
 }
 
 fn parse(text: &str) -> Result<Vec<DispositionEntry>, String> {
-    let wrong = |error: toml::de::Error| {
-        let line = error.span().map(|span| text[..span.start].matches('\n').count() + 1);
+    let wrong = |(line, message): (Option<usize>, String)| {
         let place = line.map_or_else(String::new, |line| format!("line {line}: "));
-        format!("{place}{}", error.message().lines().collect::<Vec<_>>().join(", "))
+        format!("{place}{}", message.lines().collect::<Vec<_>>().join(", "))
     };
-    let version: Version = toml::from_str(text).map_err(wrong)?;
+    let version: Version = octant_toml_tree::read_as(text).map_err(wrong)?;
     if version.schema != SCHEMA {
         return Err(format!(
             "found version {}, this program reads version {SCHEMA}{}",
@@ -225,7 +224,7 @@ fn parse(text: &str) -> Result<Vec<DispositionEntry>, String> {
             if version.schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
         ));
     }
-    let file: File = toml::from_str(text).map_err(wrong)?;
+    let file: File = octant_toml_tree::read_as(text).map_err(wrong)?;
     let mut ids = BTreeSet::new();
     if let Some(twice) = file.discrepancies.iter().find(|entry| !ids.insert(&entry.id)) {
         return Err(format!("{:?} is there a second time, expected it once", twice.id));

@@ -5,12 +5,12 @@
 
 use super::error::ManifestError;
 use super::folder::PARTIAL;
-use super::inside::SUMMARY;
 use super::manifest::Manifest;
 use super::names::MANIFEST;
-use octant_requirements::Verdict;
+use super::statements::SUMMARY;
 use octant_score::judge::derive;
 use octant_score::summary::Summary;
+use octant_verdict::Verdict;
 use std::path::Path;
 
 /// Reads the summary of a run that has ended; `None` for one that goes on or was killed before its folder was whole.

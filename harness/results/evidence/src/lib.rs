@@ -14,11 +14,11 @@ mod fmus;
 pub mod folder;
 mod host;
 mod inputs;
-pub mod inside;
 pub mod leftover;
 pub mod manifest;
 mod names;
 pub mod signature;
+pub mod statements;
 
 pub use fmus::{FmuFactsError, fmus};
 pub use folder::LOCK;

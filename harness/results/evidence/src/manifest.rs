@@ -12,8 +12,8 @@ use super::inputs::InputFacts;
 use octant_base::printable::printable;
 use octant_operator::{OperatorRecord, journal};
 use octant_realtime::schedule::Granted;
-use octant_requirements::equipment::Equipment;
 use octant_score::numerics::NUMERICS;
+use octant_verdict::equipment::Equipment;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

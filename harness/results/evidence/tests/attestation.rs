@@ -1,7 +1,7 @@
 //! Results of attestations.
 
 use octant_evidence::attestation::result;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 #[test]
 fn a_pass_alone_passes() {

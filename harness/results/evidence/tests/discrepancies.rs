@@ -2,9 +2,9 @@
 
 use crate::common::{judged, requirement, silent, summary};
 use octant_evidence::discrepancy::of_run;
-use octant_requirements::{Comparison, Verdict};
 use octant_score::judge::{Finding, judge};
 use octant_score::summary::FaultResult;
+use octant_verdict::{Comparison, Verdict};
 use std::collections::BTreeSet;
 
 /// Everything that isn't a pass is found, exactly once; and the same run has the same ids.

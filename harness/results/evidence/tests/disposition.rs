@@ -2,7 +2,7 @@
 
 use octant_evidence::discrepancy::Discrepancy;
 use octant_evidence::disposition::{DispositionError, Dispositions, FILE_NAME};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::Path;
 
 #[test]

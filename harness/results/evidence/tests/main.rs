@@ -8,6 +8,6 @@ mod attestation;
 mod discrepancies;
 mod disposition;
 mod folder;
-mod inside;
 mod manifest;
 mod signature;
+mod statements;

@@ -2,36 +2,36 @@
 //! arcminutes, parameters in the units of the reports.
 
 use super::table::CellKind::{Boolean, Integer, Number, Text};
-use super::table::{CellKind, ExportColumn, ExportTable};
+use super::table::{CellKind, Column, Table};
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 
 /// Columns of a table, in the order of the cells of its rows.
 #[must_use]
-pub fn columns(table: ExportTable) -> Vec<ExportColumn> {
+pub fn columns(table: Table) -> Vec<Column> {
     let mut all = fixed(&[("time_s", "s", Number, "run time: simulated time since the start")]);
     match table {
-        ExportTable::Navigation => {
+        Table::Navigation => {
             all.extend(fixed(&NAVIGATION));
             all.extend(fixed(&TRUTH));
             all.extend(fixed(&ERRORS));
         }
-        ExportTable::Samples => {
+        Table::Samples => {
             all.extend(sample("", "reached the core"));
             all.extend(sample("clean_", "of the source, where another or none reached the core"));
         }
-        ExportTable::Aiding => all.extend(fixed(&AIDING)),
-        ExportTable::Parameters => all.extend(parameters()),
-        ExportTable::Innovations => all.extend(fixed(&INNOVATIONS)),
-        ExportTable::Faults => all.extend(fixed(&FAULTS)),
-        ExportTable::Events => all.extend(fixed(&EVENTS)),
+        Table::Aiding => all.extend(fixed(&AIDING)),
+        Table::Parameters => all.extend(parameters()),
+        Table::Innovations => all.extend(fixed(&INNOVATIONS)),
+        Table::Faults => all.extend(fixed(&FAULTS)),
+        Table::Events => all.extend(fixed(&EVENTS)),
     }
     all
 }
 
 type Fixed = (&'static str, &'static str, CellKind, &'static str);
 
-fn fixed(columns: &[Fixed]) -> Vec<ExportColumn> {
-    let one = |&(name, unit, kind, text): &Fixed| ExportColumn::new(name, unit, kind, text);
+fn fixed(columns: &[Fixed]) -> Vec<Column> {
+    let one = |&(name, unit, kind, text): &Fixed| Column::new(name, unit, kind, text);
     columns.iter().map(one).collect()
 }
 
@@ -171,15 +171,15 @@ const EVENTS: [Fixed; 2] = [
     ("detail", "", Text, "details as JSON"),
 ];
 
-fn sample(prefix: &str, words: &str) -> Vec<ExportColumn> {
+fn sample(prefix: &str, words: &str) -> Vec<Column> {
     let mut all = vec![
-        ExportColumn::new(
+        Column::new(
             format!("{prefix}sequence"),
             "",
             Integer,
             format!("number of the sample that {words}, from 1"),
         ),
-        ExportColumn::new(
+        Column::new(
             format!("{prefix}device_time_s"),
             "s",
             Number,
@@ -191,7 +191,7 @@ fn sample(prefix: &str, words: &str) -> Vec<ExportColumn> {
         ("delta_velocity", "m/s", "mps", "integral of the specific force, body axis"),
     ] {
         for axis in ["x", "y", "z"] {
-            all.push(ExportColumn::new(
+            all.push(Column::new(
                 format!("{prefix}{quantity}_{axis}_{suffix}"),
                 unit,
                 Number,
@@ -200,14 +200,14 @@ fn sample(prefix: &str, words: &str) -> Vec<ExportColumn> {
         }
     }
     for (gimbal, about) in [("azimuth", "inner gimbal"), ("roll", "outer gimbal")] {
-        all.push(ExportColumn::new(
+        all.push(Column::new(
             format!("{prefix}gimbal_{gimbal}_deg"),
             "deg",
             Number,
             format!("{about} by its encoder, cumulative"),
         ));
     }
-    all.push(ExportColumn::new(
+    all.push(Column::new(
         format!("{prefix}status"),
         "",
         Integer,
@@ -228,10 +228,10 @@ pub const fn parameter_suffix(group: ParameterGroup) -> &'static str {
     }
 }
 
-fn parameters() -> Vec<ExportColumn> {
+fn parameters() -> Vec<Column> {
     let mut all = vec![
-        ExportColumn::new("sequence", "", Integer, "number of the sample that they belong to"),
-        ExportColumn::new("revision", "", Integer, "number of changes of the parameters so far"),
+        Column::new("sequence", "", Integer, "number of the sample that they belong to"),
+        Column::new("revision", "", Integer, "number of changes of the parameters so far"),
     ];
     for (prefix, about) in [
         ("", "estimate of the error, measured minus true"),
@@ -240,7 +240,7 @@ fn parameters() -> Vec<ExportColumn> {
     ] {
         for (i, name) in NAMES.iter().enumerate().take(PARAMETER_COUNT) {
             let group = ParameterGroup::of(i);
-            all.push(ExportColumn::new(
+            all.push(Column::new(
                 format!("{prefix}{name}_{}", parameter_suffix(group)),
                 group.unit(),
                 Number,
@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_end_in_their_unit() {
-        for table in ExportTable::ALL {
+        for table in Table::ALL {
             let columns = columns(table);
             let names: BTreeSet<&str> = columns.iter().map(|c| c.name.as_str()).collect();
             assert_eq!(names.len(), columns.len(), "{}", table.name());

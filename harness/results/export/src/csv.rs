@@ -2,7 +2,7 @@
 
 use super::error::ExportFailure;
 use super::job::{Job, NewFile};
-use super::table::ExportCell;
+use super::table::Cell;
 use std::io::BufWriter;
 use std::path::PathBuf;
 
@@ -50,13 +50,13 @@ pub(crate) fn about_file(job: &Job<'_>) -> Result<NewFile, ExportFailure> {
 }
 
 /// Writes a cell as text: a number with the fewest digits that read back as the same bits.
-fn field(cell: &ExportCell, text: &mut String) {
+fn field(cell: &Cell, text: &mut String) {
     use std::fmt::Write as _;
     text.clear();
     // Writing to a string doesn't fail.
     let _ = match cell {
-        ExportCell::Empty => Ok(()),
-        ExportCell::Number(number) => {
+        Cell::Empty => Ok(()),
+        Cell::Number(number) => {
             let size = number.abs();
             if size != 0.0 && !(1e-5..1e16).contains(&size) {
                 write!(text, "{number:e}")
@@ -64,9 +64,9 @@ fn field(cell: &ExportCell, text: &mut String) {
                 write!(text, "{number}")
             }
         }
-        ExportCell::Integer(number) => write!(text, "{number}"),
-        ExportCell::Boolean(value) => write!(text, "{value}"),
-        ExportCell::Text(words) => text.write_str(words),
+        Cell::Integer(number) => write!(text, "{number}"),
+        Cell::Boolean(value) => write!(text, "{value}"),
+        Cell::Text(words) => text.write_str(words),
     };
 }
 
@@ -78,13 +78,13 @@ mod tests {
     fn numbers_read_back_as_the_same_bits() {
         let mut text = String::new();
         for number in [0.0, -0.0, 1.0, 0.1, -1e-5, 9.999e-6, 1e16, 1.0 / 3.0, 5e-324, f64::MAX] {
-            field(&ExportCell::Number(number), &mut text);
+            field(&Cell::Number(number), &mut text);
             assert_eq!(text.parse::<f64>().unwrap().to_bits(), number.to_bits(), "{text}");
             assert!(text.len() < 25, "{text}");
         }
-        field(&ExportCell::from(f64::NAN), &mut text);
+        field(&Cell::from(f64::NAN), &mut text);
         assert_eq!(text, "");
-        field(&ExportCell::Boolean(true), &mut text);
+        field(&Cell::Boolean(true), &mut text);
         assert_eq!(text, "true");
     }
 }

@@ -1,9 +1,10 @@
 //! One export: its recording as surveyed, its place, and the second reading that fills the files.
 
 use super::error::ExportFailure;
-use super::rows::{ExportChoice, each_row};
+use super::rows::{Choice, each_row};
 use super::survey::{Survey, SurveyedTable};
-use super::table::ExportCell;
+use super::table::Cell;
+use octant_base::whole_file::new_file;
 use octant_recorder::reader::{Info, Recording};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -12,12 +13,11 @@ use std::path::{Path, PathBuf};
 pub const EXPORT_VERSION: u32 = 1;
 
 /// Takes a row of the table with an index.
-pub(crate) type TakesIndexedRow<'a> =
-    dyn FnMut(usize, &[ExportCell]) -> Result<(), ExportFailure> + 'a;
+pub(crate) type TakesIndexedRow<'a> = dyn FnMut(usize, &[Cell]) -> Result<(), ExportFailure> + 'a;
 
 /// One export.
 pub(crate) struct Job<'a> {
-    pub(crate) choice: &'a ExportChoice,
+    pub(crate) choice: &'a Choice,
     pub(crate) survey: Survey,
     /// Head of the recording.
     pub(crate) info: Info,
@@ -30,7 +30,7 @@ pub(crate) struct Job<'a> {
 impl<'a> Job<'a> {
     /// Surveys the recording.
     pub(crate) fn new(
-        choice: &'a ExportChoice,
+        choice: &'a Choice,
         out: &'a Path,
         force: bool,
     ) -> Result<Self, ExportFailure> {
@@ -107,11 +107,7 @@ impl NewFile {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder).map_err(system)?;
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".octant-").suffix(".new");
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let new = builder.tempfile_in(folder).map_err(system)?;
+        let new = new_file(folder).map_err(system)?;
         Ok(Self { path: path.to_owned(), new, force })
     }
 

@@ -7,7 +7,7 @@
 use super::error::ExportFailure;
 use super::job::{EXPORT_VERSION, Job, NewFile};
 use super::rows::each_row;
-use super::table::{ExportCell, ExportTable};
+use super::table::{Cell, Table};
 use octant_base::printable::printable;
 use octant_sample::Mode;
 use octant_views::solution::is_solution;
@@ -94,7 +94,7 @@ enum Part {
 
 /// Passes on the points of a track: those of calibration and navigation.
 fn points(job: &Job<'_>, track: &Track, take: &mut dyn FnMut(Point)) -> Result<(), ExportFailure> {
-    let Some(table) = job.survey.table(ExportTable::Navigation) else { return Ok(()) };
+    let Some(table) = job.survey.table(Table::Navigation) else { return Ok(()) };
     let place = |name: &str| {
         table.columns.iter().find(|found| found.column.name == name).map(|found| found.place)
     };
@@ -104,9 +104,9 @@ fn points(job: &Job<'_>, track: &Track, take: &mut dyn FnMut(Point)) -> Result<(
         return Ok(());
     };
     each_row(job.choice, &mut |table, cells| {
-        let known = Mode::ALL.into_iter().find(|known| {
-            table == ExportTable::Navigation && cells[mode] == ExportCell::from(*known as u8)
-        });
+        let known = Mode::ALL
+            .into_iter()
+            .find(|known| table == Table::Navigation && cells[mode] == Cell::from(*known as u8));
         if known.is_some_and(is_solution) {
             let point = Point {
                 time_s: cells[0].as_f64(),

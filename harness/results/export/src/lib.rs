@@ -24,15 +24,15 @@ pub mod table;
 
 pub use error::ExportFailure;
 pub use job::EXPORT_VERSION;
-pub use rows::ExportChoice;
-pub use table::ExportTable;
+pub use rows::Choice;
+pub use table::Table;
 
 use job::Job;
 use std::path::{Path, PathBuf};
 
 /// Format of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExportFormat {
+pub enum Format {
     /// A folder of CSV files, one a table.
     Csv,
     /// A folder of Parquet files, one a table.
@@ -45,7 +45,7 @@ pub enum ExportFormat {
     RosbagMcap,
 }
 
-impl ExportFormat {
+impl Format {
     /// All formats.
     pub const ALL: [Self; 5] = [Self::Csv, Self::Parquet, Self::Mat, Self::Kml, Self::RosbagMcap];
 
@@ -101,8 +101,8 @@ pub struct Exported {
 /// If the recording can't be read or has nothing for the format, a file is in the way and `force` is false, or the
 /// operating system refuses.
 pub fn export(
-    choice: &ExportChoice,
-    format: ExportFormat,
+    choice: &Choice,
+    format: Format,
     out: &Path,
     force: bool,
 ) -> Result<Exported, ExportFailure> {
@@ -114,11 +114,11 @@ pub fn export(
         });
     }
     let files = match format {
-        ExportFormat::Csv => csv::write(&job)?,
-        ExportFormat::Parquet => parquet::write(&job)?,
-        ExportFormat::Mat => mat::write(&job)?,
-        ExportFormat::Kml => kml::write(&job)?,
-        ExportFormat::RosbagMcap => rosbag::write(&job)?,
+        Format::Csv => csv::write(&job)?,
+        Format::Parquet => parquet::write(&job)?,
+        Format::Mat => mat::write(&job)?,
+        Format::Kml => kml::write(&job)?,
+        Format::RosbagMcap => rosbag::write(&job)?,
     };
     Ok(Exported { files, notes: job.survey.notes() })
 }

@@ -12,7 +12,7 @@
 use super::error::ExportFailure;
 use super::job::{EXPORT_VERSION, Job, NewFile};
 use super::survey::{SurveyedColumn, SurveyedTable};
-use super::table::{CellKind, ExportCell};
+use super::table::{Cell, CellKind};
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -252,7 +252,7 @@ impl<'a> Placed<'a> {
         Ok(at)
     }
 
-    fn row(&mut self, file: &mut File, cells: &[ExportCell]) -> std::io::Result<()> {
+    fn row(&mut self, file: &mut File, cells: &[Cell]) -> std::io::Result<()> {
         for column in &mut self.columns {
             column.push(&cells[column.found.place]);
             if column.buffer.len() >= BUFFER_BYTES {
@@ -286,12 +286,12 @@ impl PlacedColumn<'_> {
         }
     }
 
-    fn push(&mut self, cell: &ExportCell) {
+    fn push(&mut self, cell: &Cell) {
         match self.form {
             Form::Double => self.buffer.extend_from_slice(&cell.as_f64().to_le_bytes()),
-            Form::Logical => self.buffer.push(u8::from(*cell == ExportCell::Boolean(true))),
+            Form::Logical => self.buffer.push(u8::from(*cell == Cell::Boolean(true))),
             Form::Cells => {
-                let words = if let ExportCell::Text(words) = cell { words.as_str() } else { "" };
+                let words = if let Cell::Text(words) = cell { words.as_str() } else { "" };
                 self.buffer.extend(text(words));
             }
         }

@@ -7,7 +7,7 @@ use super::csv::about_file;
 use super::error::ExportFailure;
 use super::job::{EXPORT_VERSION, Job, NewFile, columns_json};
 use super::survey::SurveyedTable;
-use super::table::{CellKind, ExportCell};
+use super::table::{Cell, CellKind};
 use octant_base::arrow::{ARROW_SCHEMA_KEY, ArrowField, ArrowKind, arrow_schema};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::writer::ColumnWriterImpl;
@@ -29,7 +29,7 @@ struct TableFile<'a> {
     table: &'a SurveyedTable,
     writer: SerializedFileWriter<File>,
     /// Cells of the row group so far, by column.
-    cells: Vec<Vec<ExportCell>>,
+    cells: Vec<Vec<Cell>>,
 }
 
 /// Writes `TABLE.parquet` for every table, and `export.json`; returns the files.
@@ -55,7 +55,7 @@ impl<'a> TableFile<'a> {
         Ok(Self { new, table, writer, cells })
     }
 
-    fn row(&mut self, row: &[ExportCell]) -> Result<(), ExportFailure> {
+    fn row(&mut self, row: &[Cell]) -> Result<(), ExportFailure> {
         for (column, found) in self.cells.iter_mut().zip(&self.table.columns) {
             column.push(row[found.place].clone());
         }
@@ -141,7 +141,7 @@ fn arrow_fields(table: &SurveyedTable) -> Vec<ArrowField> {
 fn group(
     writer: &mut SerializedFileWriter<File>,
     kinds: impl Iterator<Item = CellKind>,
-    cells: &[Vec<ExportCell>],
+    cells: &[Vec<Cell>],
 ) -> Result<(), ParquetError> {
     let mut group = writer.next_row_group()?;
     for (kind, cells) in kinds.zip(cells) {
@@ -158,26 +158,26 @@ fn group(
     Ok(())
 }
 
-fn number(cell: &ExportCell) -> Option<f64> {
+fn number(cell: &Cell) -> Option<f64> {
     Some(cell.as_f64()).filter(|number| !number.is_nan())
 }
 
-const fn integer(cell: &ExportCell) -> Option<i64> {
-    if let ExportCell::Integer(number) = cell { Some(*number) } else { None }
+const fn integer(cell: &Cell) -> Option<i64> {
+    if let Cell::Integer(number) = cell { Some(*number) } else { None }
 }
 
-const fn boolean(cell: &ExportCell) -> Option<bool> {
-    if let ExportCell::Boolean(value) = cell { Some(*value) } else { None }
+const fn boolean(cell: &Cell) -> Option<bool> {
+    if let Cell::Boolean(value) = cell { Some(*value) } else { None }
 }
 
-fn text(cell: &ExportCell) -> Option<ByteArray> {
-    if let ExportCell::Text(text) = cell { Some(ByteArray::from(text.as_str())) } else { None }
+fn text(cell: &Cell) -> Option<ByteArray> {
+    if let Cell::Text(text) = cell { Some(ByteArray::from(text.as_str())) } else { None }
 }
 
 fn put<D: DataType>(
     column: &mut SerializedColumnWriter<'_>,
-    cells: &[ExportCell],
-    value: impl Fn(&ExportCell) -> Option<D::T>,
+    cells: &[Cell],
+    value: impl Fn(&Cell) -> Option<D::T>,
     typed: impl for<'a, 'b> Fn(&'a mut SerializedColumnWriter<'b>) -> &'a mut ColumnWriterImpl<'b, D>,
 ) -> Result<(), ParquetError> {
     let values: Vec<Option<D::T>> = cells.iter().map(value).collect();

@@ -3,7 +3,7 @@
 use super::attitude;
 use super::error::ExportFailure;
 use super::resample::Grid;
-use super::table::{ExportCell, ExportTable};
+use super::table::{Cell, Table};
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use octant_recorder::Event;
 use octant_recorder::message::Topic;
@@ -19,11 +19,11 @@ use std::path::{Path, PathBuf};
 
 /// Selection of what is exported.
 #[derive(Clone, Debug)]
-pub struct ExportChoice {
+pub struct Choice {
     /// The recording.
     pub recording: PathBuf,
-    /// Tables, in the order of [`ExportTable::ALL`].
-    pub tables: Vec<ExportTable>,
+    /// Tables, in the order of [`Table::ALL`].
+    pub tables: Vec<Table>,
     /// Period of the rows that are kept, ns; `None` keeps all.
     pub every_ns: Option<u64>,
     /// True values of the parameters, SI, where they are known.
@@ -55,10 +55,7 @@ struct Epoch {
 ///
 /// # Errors
 /// If the recording can't be read, or `take` refuses a row.
-pub fn each_row(
-    choice: &ExportChoice,
-    take: &mut TakesRow<'_>,
-) -> Result<ReadToEnd, ExportFailure> {
+pub fn each_row(choice: &Choice, take: &mut TakesRow<'_>) -> Result<ReadToEnd, ExportFailure> {
     let mut rows = Rows {
         grids: choice.tables.iter().map(|table| (*table, grid(*table, choice))).collect(),
         true_parameters: choice.true_parameters.as_ref(),
@@ -116,23 +113,23 @@ pub(crate) fn each_item(
     Ok(end)
 }
 
-fn grid(table: ExportTable, choice: &ExportChoice) -> Grid {
+fn grid(table: Table, choice: &Choice) -> Grid {
     Grid::new(choice.every_ns.filter(|_| table.is_resampled()))
 }
 
 /// Takes a row of a table.
-pub type TakesRow<'a> = dyn FnMut(ExportTable, &[ExportCell]) -> Result<(), ExportFailure> + 'a;
+pub type TakesRow<'a> = dyn FnMut(Table, &[Cell]) -> Result<(), ExportFailure> + 'a;
 
 struct Rows<'a> {
-    grids: BTreeMap<ExportTable, Grid>,
+    grids: BTreeMap<Table, Grid>,
     true_parameters: Option<&'a [f64; PARAMETER_COUNT]>,
-    cells: Vec<ExportCell>,
+    cells: Vec<Cell>,
     take: &'a mut TakesRow<'a>,
 }
 
 impl Rows<'_> {
     /// Begins a row; false if its table isn't wanted, or not at this time.
-    fn begin(&mut self, table: ExportTable, time_ns: u64) -> bool {
+    fn begin(&mut self, table: Table, time_ns: u64) -> bool {
         if !self.grids.get_mut(&table).is_some_and(|grid| grid.keeps(time_ns)) {
             return false;
         }
@@ -141,44 +138,44 @@ impl Rows<'_> {
         true
     }
 
-    fn put(&mut self, cell: impl Into<ExportCell>) {
+    fn put(&mut self, cell: impl Into<Cell>) {
         self.cells.push(cell.into());
     }
 
     fn numbers(&mut self, values: &[f64]) {
-        self.cells.extend(values.iter().map(|value| ExportCell::from(*value)));
+        self.cells.extend(values.iter().map(|value| Cell::from(*value)));
     }
 
     fn empty(&mut self, count: usize) {
-        self.cells.extend(std::iter::repeat_n(ExportCell::Empty, count));
+        self.cells.extend(std::iter::repeat_n(Cell::Empty, count));
     }
 
-    fn end(&mut self, table: ExportTable) -> Result<(), ExportFailure> {
+    fn end(&mut self, table: Table) -> Result<(), ExportFailure> {
         (self.take)(table, &self.cells)
     }
 
     fn epoch(&mut self, epoch: &Epoch) -> Result<(), ExportFailure> {
         if (epoch.sample.is_some() || epoch.clean.is_some())
-            && self.begin(ExportTable::Samples, epoch.time_ns)
+            && self.begin(Table::Samples, epoch.time_ns)
         {
             self.sample(epoch.sample.as_ref());
             self.sample(epoch.clean.as_ref());
-            self.end(ExportTable::Samples)?;
+            self.end(Table::Samples)?;
         }
         let Some(output) = &epoch.output else { return Ok(()) };
-        if output.nis.is_finite() && self.begin(ExportTable::Innovations, epoch.time_ns) {
+        if output.nis.is_finite() && self.begin(Table::Innovations, epoch.time_ns) {
             self.put(output.sequence);
             self.put(output.mode as u8);
             self.put(output.nis);
             self.put(output.health.contains(Health::INNOVATION_REJECTED));
             self.innovation(epoch.innovation.as_ref());
-            self.end(ExportTable::Innovations)?;
+            self.end(Table::Innovations)?;
         }
-        if self.begin(ExportTable::Navigation, epoch.time_ns) {
+        if self.begin(Table::Navigation, epoch.time_ns) {
             self.navigation(output, epoch.sample.map(|sample| sample.gimbal));
             self.truth(epoch.truth.as_ref());
             self.errors(output, epoch.truth.as_ref());
-            self.end(ExportTable::Navigation)?;
+            self.end(Table::Navigation)?;
         }
         Ok(())
     }
@@ -269,7 +266,7 @@ impl Rows<'_> {
     }
 
     fn aiding(&mut self, time_ns: u64, reference: &Reference) -> Result<(), ExportFailure> {
-        if !self.begin(ExportTable::Aiding, time_ns) {
+        if !self.begin(Table::Aiding, time_ns) {
             return Ok(());
         }
         match *reference {
@@ -284,7 +281,7 @@ impl Rows<'_> {
                 self.numbers(&[latitude_rad.to_degrees(), longitude_rad.to_degrees(), height_m]);
             }
         }
-        self.end(ExportTable::Aiding)
+        self.end(Table::Aiding)
     }
 
     fn parameters(
@@ -293,7 +290,7 @@ impl Rows<'_> {
         sequence: u64,
         estimate: &ParameterEstimate,
     ) -> Result<(), ExportFailure> {
-        if !self.begin(ExportTable::Parameters, time_ns) {
+        if !self.begin(Table::Parameters, time_ns) {
             return Ok(());
         }
         self.put(sequence);
@@ -316,25 +313,25 @@ impl Rows<'_> {
             }
             None => self.empty(PARAMETER_COUNT),
         }
-        self.end(ExportTable::Parameters)
+        self.end(Table::Parameters)
     }
 
     fn event(&mut self, time_ns: u64, event: &Event) -> Result<(), ExportFailure> {
         if let Event::Fault { begins, id, kind, sample } = event
-            && self.begin(ExportTable::Faults, time_ns)
+            && self.begin(Table::Faults, time_ns)
         {
             self.put(id.as_str());
             self.put(kind.as_str());
             self.put(*begins);
             self.put(*sample);
-            self.end(ExportTable::Faults)?;
+            self.end(Table::Faults)?;
         }
-        if self.begin(ExportTable::Events, time_ns) {
+        if self.begin(Table::Events, time_ns) {
             let value = serde_json::to_value(event).unwrap_or_default();
             self.put(value.get("kind").and_then(serde_json::Value::as_str).unwrap_or_default());
             let detail = value.get("detail").map_or_else(String::new, ToString::to_string);
             self.put(detail.as_str());
-            self.end(ExportTable::Events)?;
+            self.end(Table::Events)?;
         }
         Ok(())
     }

@@ -2,14 +2,14 @@
 
 use super::columns::columns;
 use super::error::ExportFailure;
-use super::rows::{ExportChoice, ReadToEnd, each_row};
-use super::table::{ExportCell, ExportColumn, ExportTable};
+use super::rows::{Choice, ReadToEnd, each_row};
+use super::table::{Cell, Column, Table};
 
 /// Column as the recording fills it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SurveyedColumn {
     /// The column.
-    pub column: ExportColumn,
+    pub column: Column,
     /// Place among the cells of a row.
     pub place: usize,
     /// Number of cells with a value.
@@ -22,7 +22,7 @@ pub struct SurveyedColumn {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SurveyedTable {
     /// The table.
-    pub table: ExportTable,
+    pub table: Table,
     /// Number of rows.
     pub rows: u64,
     /// Columns that have a value in some row; all of them in a table without rows.
@@ -37,7 +37,7 @@ pub struct Survey {
     /// Chosen tables that have rows.
     pub tables: Vec<SurveyedTable>,
     /// Chosen tables that have none.
-    pub empty: Vec<ExportTable>,
+    pub empty: Vec<Table>,
     /// State at the end of reading.
     pub end: ReadToEnd,
 }
@@ -47,7 +47,7 @@ impl Survey {
     ///
     /// # Errors
     /// If it can't be read.
-    pub fn of(choice: &ExportChoice) -> Result<Self, ExportFailure> {
+    pub fn of(choice: &Choice) -> Result<Self, ExportFailure> {
         let mut tables: Vec<SurveyedTable> = choice.tables.iter().map(|t| unread(*t)).collect();
         let end = each_row(choice, &mut |table, cells| {
             if let Some(found) = tables.iter_mut().find(|found| found.table == table) {
@@ -68,7 +68,7 @@ impl Survey {
 
     /// Table as it was found.
     #[must_use]
-    pub fn table(&self, table: ExportTable) -> Option<&SurveyedTable> {
+    pub fn table(&self, table: Table) -> Option<&SurveyedTable> {
         self.tables.iter().find(|found| found.table == table)
     }
 
@@ -87,7 +87,7 @@ impl Survey {
             let (truth, others): (Vec<_>, Vec<_>) =
                 table.left_out.iter().partition(|n| has_truth(n));
             let name = table.table.name();
-            if table.table == ExportTable::Navigation && !truth.is_empty() {
+            if table.table == Table::Navigation && !truth.is_empty() {
                 notes.push(format!(
                     "{name}: the recording has no truth, columns of truth and errors are left out"
                 ));
@@ -124,19 +124,19 @@ impl Survey {
     }
 }
 
-fn unread(table: ExportTable) -> SurveyedTable {
+fn unread(table: Table) -> SurveyedTable {
     let column = |(place, column)| SurveyedColumn { column, place, filled: 0, text_units: 0 };
     let columns = columns(table).into_iter().enumerate().map(column).collect();
     SurveyedTable { table, rows: 0, columns, left_out: Vec::new() }
 }
 
 impl SurveyedTable {
-    fn count(&mut self, cells: &[ExportCell]) {
+    fn count(&mut self, cells: &[Cell]) {
         debug_assert_eq!(cells.len(), self.columns.len(), "{}", self.table.name());
         self.rows += 1;
         for (column, cell) in self.columns.iter_mut().zip(cells) {
-            column.filled += u64::from(*cell != ExportCell::Empty);
-            if let ExportCell::Text(text) = cell {
+            column.filled += u64::from(*cell != Cell::Empty);
+            if let Cell::Text(text) = cell {
                 column.text_units += (text.encode_utf16().count() as u64).next_multiple_of(4);
             }
         }

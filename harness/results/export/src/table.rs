@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// Table of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ExportTable {
+pub enum Table {
     /// Outputs of the core, joined with encoders, truth and errors of the same epoch.
     Navigation,
     /// Inertial samples that reached the core, with the source's where a fault altered them.
@@ -21,7 +21,7 @@ pub enum ExportTable {
     Events,
 }
 
-impl ExportTable {
+impl Table {
     /// All tables.
     pub const ALL: [Self; 7] = [
         Self::Navigation,
@@ -76,7 +76,7 @@ pub enum CellKind {
 
 /// Column of a table.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ExportColumn {
+pub struct Column {
     /// Name, with the unit as its suffix.
     pub name: String,
     /// Unit; empty for counts, codes and texts.
@@ -87,7 +87,7 @@ pub struct ExportColumn {
     pub description: String,
 }
 
-impl ExportColumn {
+impl Column {
     /// Creates a column.
     #[must_use]
     pub fn new(
@@ -102,7 +102,7 @@ impl ExportColumn {
 
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ExportCell {
+pub enum Cell {
     /// No value: null, or NaN where a format has no null.
     Empty,
     /// A number.
@@ -115,7 +115,7 @@ pub enum ExportCell {
     Text(String),
 }
 
-impl ExportCell {
+impl Cell {
     /// Number of a cell; NaN without one.
     #[must_use]
     pub fn as_f64(&self) -> f64 {
@@ -128,51 +128,51 @@ impl ExportCell {
     }
 }
 
-impl From<f64> for ExportCell {
+impl From<f64> for Cell {
     /// A number that isn't finite is no value.
     fn from(number: f64) -> Self {
         if number.is_finite() { Self::Number(number) } else { Self::Empty }
     }
 }
 
-impl From<Option<f64>> for ExportCell {
+impl From<Option<f64>> for Cell {
     fn from(number: Option<f64>) -> Self {
         number.map_or(Self::Empty, Self::from)
     }
 }
 
-impl From<u64> for ExportCell {
+impl From<u64> for Cell {
     /// A number beyond the range of the column is no value.
     fn from(number: u64) -> Self {
         i64::try_from(number).map_or(Self::Empty, Self::Integer)
     }
 }
 
-impl From<u32> for ExportCell {
+impl From<u32> for Cell {
     fn from(number: u32) -> Self {
         Self::Integer(i64::from(number))
     }
 }
 
-impl From<u16> for ExportCell {
+impl From<u16> for Cell {
     fn from(number: u16) -> Self {
         Self::Integer(i64::from(number))
     }
 }
 
-impl From<u8> for ExportCell {
+impl From<u8> for Cell {
     fn from(number: u8) -> Self {
         Self::Integer(i64::from(number))
     }
 }
 
-impl From<bool> for ExportCell {
+impl From<bool> for Cell {
     fn from(value: bool) -> Self {
         Self::Boolean(value)
     }
 }
 
-impl From<&str> for ExportCell {
+impl From<&str> for Cell {
     fn from(text: &str) -> Self {
         Self::Text(text.to_owned())
     }

@@ -17,7 +17,6 @@ mod item;
 pub mod message;
 mod published;
 pub mod reader;
-mod recorded;
 pub mod records;
 mod sink;
 mod stream_hash;

@@ -2,16 +2,44 @@
 
 pub use super::item::Item;
 use super::message::{MessageError, Topic};
-pub use super::recorded::RecordedEpoch;
 use super::records::{FileEnd, Records, RecordsError};
-
 use super::writer::{FORMAT_METADATA, RUN_METADATA, SCENARIO_ATTACHMENT};
 use super::{Event, FORMAT_VERSION, Samples, StreamHash};
 use mcap::records::{Record, op};
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Aiding, Innovation, NavigationCovariance, Output, Sample, Truth};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
+
+/// Recorded data of one epoch. With decimation any part can be missing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedEpoch {
+    /// Simulated time, ns.
+    pub time_ns: u64,
+    /// Sample that reached the core.
+    pub sample: Option<Sample>,
+    /// Aiding that reached the core.
+    pub aiding: Option<Aiding>,
+    /// Sample that the source delivered, if it differs from `sample`; without `sample` if it didn't
+    /// reach the core in its step.
+    pub clean_sample: Option<Sample>,
+    /// Aiding that the source delivered (`Some(None)`: none), if it differs from `aiding`.
+    pub clean_aiding: Option<Option<Aiding>>,
+    /// Output.
+    pub output: Option<Output>,
+    /// Innovation of the measurement.
+    pub innovation: Option<Innovation>,
+    /// Covariance of the solution after the measurement.
+    pub covariance: Option<NavigationCovariance>,
+    /// Parameters recorded with this epoch.
+    pub parameters: Option<ParameterEstimate>,
+    /// Truth.
+    pub truth: Option<Truth>,
+    /// Events since the epoch before, up to this one.
+    pub events: Vec<Event>,
+}
 
 /// Error of reading a recording.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Allan deviation of the sensors at rest, with the noise terms that describe it.
 
-use super::chart::{Band, Chart, ChartLine, ChartRole};
+use super::chart::{Band, Chart, Line, Role};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_score::summary::{AxisAllan, NoiseTermScore, SensorAllan, Summary};
@@ -94,7 +94,7 @@ fn chart(title: &str, axis: &AxisAllan, (is_gyro, moves): (bool, bool)) -> Marku
     if !moves {
         chart.bands.push(Band {
             label: "interval of 95 %".to_owned(),
-            role: ChartRole::Primary,
+            role: Role::Primary,
             points: rows().map(|[tau_s, _, low, high, _]| [place(*tau_s), *low, *high]).collect(),
         });
     }
@@ -110,16 +110,12 @@ fn chart(title: &str, axis: &AxisAllan, (is_gyro, moves): (bool, bool)) -> Marku
         (0..=steps).filter_map(at).collect()
     };
     for (label, role, points) in [
-        ("scenario's instrument", ChartRole::Reference, curve(|term| term.r#true)),
-        ("sum of the terms", ChartRole::Second, curve(|term| term.estimate)),
-        (
-            "Allan deviation",
-            ChartRole::Primary,
-            rows().map(|row| [place(row[0]), row[1]]).collect(),
-        ),
+        ("scenario's instrument", Role::Reference, curve(|term| term.r#true)),
+        ("sum of the terms", Role::Second, curve(|term| term.estimate)),
+        ("Allan deviation", Role::Primary, rows().map(|row| [place(row[0]), row[1]]).collect()),
     ] {
         if !points.is_empty() {
-            chart.lines.push(ChartLine { label: label.to_owned(), role, points });
+            chart.lines.push(Line { label: label.to_owned(), role, points });
         }
     }
     chart.render()

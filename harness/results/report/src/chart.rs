@@ -1,4 +1,4 @@
-//! ChartLine charts as inline SVG. Colours are classes of the page's style sheet, so that a chart adapts
+//! Line charts as inline SVG. Colours are classes of the page's style sheet, so that a chart adapts
 //! to light, dark and print; without the style sheet only the colour is lost.
 //!
 //! The drawing is complete without a script. Beside it stand the numbers themselves, from which the
@@ -9,7 +9,7 @@ mod model;
 mod numbers;
 mod ticks;
 
-pub use model::{Band, Chart, ChartLine, ChartRole};
+pub use model::{Band, Chart, Line, Role};
 pub use numbers::{base64, text as json_text};
 pub use ticks::{decades, exponents, hour_ticks, multiples_of, nice_ticks, round, span, thinned};
 

@@ -1,6 +1,6 @@
 //! Renders `compare.html` and the plain text of `octant compare`.
 
-use super::chart::{Chart, ChartLine, ChartRole};
+use super::chart::{Chart, Line, Role};
 use super::page::page;
 use maud::{Markup, html};
 use octant_base::display::{DisplayUnits, ShownUnit};
@@ -186,14 +186,14 @@ fn pairs(comparison: &MethodComparison, cell: &MeasureCell, units: &DisplayUnits
     if let Some(floor) = cell.floor {
         chart.levels.push((unit.of(floor), "floor".to_owned()));
     }
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: comparison.first.clone(),
-        role: ChartRole::Baseline,
+        role: Role::Baseline,
         points: series(&|v| v.0),
     });
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: comparison.second.clone(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: series(&|v| v.1),
     });
     chart.render()

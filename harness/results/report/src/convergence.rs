@@ -1,6 +1,6 @@
 //! Parameters over the calibration: σ and error of each group, error of each parameter with ±σ.
 
-use super::chart::{Band, Chart, ChartLine, ChartRole};
+use super::chart::{Band, Chart, Line, Role};
 use super::data::ReportData;
 use super::parameters::title;
 use maud::{Markup, html};
@@ -44,7 +44,7 @@ fn panel(data: &ReportData, group: ParameterGroup) -> Markup {
     chart.logarithmic = true;
     chart.bands.push(Band {
         label: "σ".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: data
             .convergence
             .iter()
@@ -62,9 +62,9 @@ fn panel(data: &ReportData, group: ParameterGroup) -> Markup {
             let sum: f64 = group.range().map(|i| (e[i] - truth[i]) * (e[i] - truth[i])).sum();
             libm::sqrt(sum / group.range().len() as f64) / unit
         };
-        chart.lines.push(ChartLine {
+        chart.lines.push(Line {
             label: "rms error".to_owned(),
-            role: ChartRole::Primary,
+            role: Role::Primary,
             points: data.convergence.iter().map(|p| [p.hours, error(p)]).collect(),
         });
     }
@@ -98,12 +98,12 @@ fn parameter(data: &ReportData, truth: &Parameters, group: ParameterGroup, i: us
     }
     chart.bands.push(Band {
         label: "±σ".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: data.convergence.iter().map(|p| [p.hours, -sigma(p), sigma(p)]).collect(),
     });
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: "error".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: data.convergence.iter().map(|p| [p.hours, error(p)]).collect(),
     });
     chart.render()

@@ -1,6 +1,6 @@
 //! Effects of the faults: the run compared with its twin without them.
 
-use super::chart::{Chart, ChartLine, ChartRole};
+use super::chart::{Chart, Line, Role};
 use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
@@ -137,10 +137,9 @@ fn drift(difference: &DriftDifference, navigation_start_h: Option<f64>) -> Marku
     );
     chart.height = 200.0;
     chart.run_offset_h = navigation_start_h;
-    for (label, role, column) in
-        [("latitude", ChartRole::Primary, 1), ("longitude", ChartRole::Baseline, 2)]
+    for (label, role, column) in [("latitude", Role::Primary, 1), ("longitude", Role::Baseline, 2)]
     {
-        chart.lines.push(ChartLine {
+        chart.lines.push(Line {
             label: label.to_owned(),
             role,
             points: difference.series_hours.iter().map(|p| [p[0], p[column]]).collect(),

@@ -1,6 +1,6 @@
 //! Navigation of a run: errors over time, scores beside their analytic references.
 
-use super::chart::{Band, Chart, ChartLine, ChartRole};
+use super::chart::{Band, Chart, Line, Role};
 use super::data::ReportData;
 use super::scores::scores;
 use super::solution;
@@ -11,15 +11,15 @@ use octant_score::reference::{AnalyticReference, VerticalDrift};
 use octant_score::summary::{NavigationScore, Summary};
 
 /// Lists the navigations of a summary with their names.
-fn navigations(summary: &Summary) -> Vec<(&str, ChartRole, &NavigationScore)> {
+fn navigations(summary: &Summary) -> Vec<(&str, Role, &NavigationScore)> {
     let mut all = Vec::new();
     if let Some(n) = &summary.navigation {
-        all.push((summary.method.as_str(), ChartRole::Primary, n));
+        all.push((summary.method.as_str(), Role::Primary, n));
     }
     if let Some(baseline) = &summary.baseline
         && let Some(n) = &baseline.navigation
     {
-        all.push((baseline.label.as_str(), ChartRole::Baseline, n));
+        all.push((baseline.label.as_str(), Role::Baseline, n));
     }
     all
 }
@@ -44,7 +44,7 @@ pub(super) fn drift(data: &ReportData) -> Markup {
                 });
                 chart.bands.push(Band {
                     label: "±1σ of random walk alone".to_owned(),
-                    role: ChartRole::Reference,
+                    role: Role::Reference,
                     points: points.collect(),
                 });
             }
@@ -56,7 +56,7 @@ pub(super) fn drift(data: &ReportData) -> Markup {
         }
         // The method under test is drawn last, on top.
         for (label, role, n) in all.iter().rev() {
-            chart.lines.push(ChartLine {
+            chart.lines.push(Line {
                 label: (*label).to_owned(),
                 role: *role,
                 points: n.series_hours.iter().map(|p| [p[0], unit.of(p[column])]).collect(),
@@ -99,7 +99,7 @@ struct DriftRow<'a> {
 
 fn drift_table(
     summary: &Summary,
-    all: &[(&str, ChartRole, &NavigationScore)],
+    all: &[(&str, Role, &NavigationScore)],
     units: &DisplayUnits,
 ) -> Markup {
     let reference = summary.reference.as_ref();
@@ -200,7 +200,7 @@ fn drift_table(
             thead { tr {
                 th { "Score" }
                 @for (label, role, _) in all {
-                    th.n { span class=(if *role == ChartRole::Primary { "primary-text" } else { "baseline-text" }) { (label) } }
+                    th.n { span class=(if *role == Role::Primary { "primary-text" } else { "baseline-text" }) { (label) } }
                 }
                 th.n { "Reference" } th style="padding-left:14px" { "The reference is" }
             } }

@@ -1,6 +1,6 @@
 //! Errors of attitude and velocity while a filter calibrates, with its own σ.
 
-use super::chart::{Band, Chart, ChartLine, ChartRole};
+use super::chart::{Band, Chart, Line, Role};
 use super::data::ReportData;
 use super::solution::COLUMNS;
 use maud::{Markup, html};
@@ -51,7 +51,7 @@ fn plot(data: &ReportData, column: usize) -> Option<Markup> {
     if sigma.len() >= 2 {
         chart.bands.push(Band {
             label: "±σ of the filter".to_owned(),
-            role: ChartRole::Primary,
+            role: Role::Primary,
             points: sigma
                 .iter()
                 .map(|row| (row[0], unit.of(row[column + 1])))
@@ -63,12 +63,12 @@ fn plot(data: &ReportData, column: usize) -> Option<Markup> {
         let points = series(&data.baseline_calibration_errors);
         if points.len() >= 2 {
             let label = baseline.label.clone();
-            chart.lines.push(ChartLine { label, role: ChartRole::Baseline, points });
+            chart.lines.push(Line { label, role: Role::Baseline, points });
         }
     }
     if errors.len() >= 2 {
         let label = data.summary.method.clone();
-        chart.lines.push(ChartLine { label, role: ChartRole::Primary, points: errors });
+        chart.lines.push(Line { label, role: Role::Primary, points: errors });
     }
     chart.y_range = scale(&chart);
     chart.levels.push((0.0, String::new()));

@@ -1,6 +1,6 @@
 //! Gimbal angles by phase of the run.
 
-use super::chart::{Chart, ChartLine, ChartRole};
+use super::chart::{Chart, Line, Role};
 use super::data::ReportData;
 use super::marks::phases;
 use maud::{Markup, html};
@@ -63,14 +63,14 @@ fn chart(points: &[&GimbalPoint]) -> Markup {
         let (low, high) = all.fold((0.0f64, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
         Some(if high - low > 500.0 { 180.0 } else { 90.0 })
     };
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: "azimuth (inner)".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: angle(&|p| p.azimuth_deg),
     });
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: "roll (outer)".to_owned(),
-        role: ChartRole::Second,
+        role: Role::Second,
         points: angle(&|p| p.roll_deg),
     });
     chart.render()

@@ -1,6 +1,6 @@
 //! Innovations of a calibration: NIS with its bounds, whiteness, and each axis.
 
-use super::chart::{Band, Chart, ChartLine, ChartRole};
+use super::chart::{Band, Chart, Line, Role};
 use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
@@ -65,12 +65,12 @@ fn means(finite: &[NisPoint], expected: Option<[f64; 2]>) -> Markup {
     chart.y_range = Some([0.0, (1.1 * highest).max(6.0)]);
     chart.bands.push(Band {
         label: "95 % interval of the mean".to_owned(),
-        role: ChartRole::Reference,
+        role: Role::Reference,
         points: ends.iter().map(|&x| [x, low.max(0.0), high]).collect(),
     });
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: format!("mean of {size} measurements"),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: means,
     });
     chart.levels.push((3.0, String::new()));
@@ -89,12 +89,12 @@ fn single(finite: &[NisPoint]) -> Markup {
     let ends = [finite[0].hours, finite[finite.len() - 1].hours];
     chart.bands.push(Band {
         label: "95 % interval of single values".to_owned(),
-        role: ChartRole::Reference,
+        role: Role::Reference,
         points: ends.iter().map(|&x| [x, CHI_SQUARED_3[0], CHI_SQUARED_3[1]]).collect(),
     });
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: "NIS".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: finite.iter().map(|p| [p.hours, p.nis]).collect(),
     });
     chart.levels.push((3.0, String::new()));
@@ -118,16 +118,16 @@ fn whiteness(finite: &[NisPoint]) -> Markup {
     let lag = |k: usize| (k + 1) as f64;
     chart.bands.push(Band {
         label: "95 % interval of white noise".to_owned(),
-        role: ChartRole::Reference,
+        role: Role::Reference,
         points: [0, correlation.len() - 1].iter().map(|&k| [lag(k), -bound, bound]).collect(),
     });
     let count = correlation.len();
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: format!(
             "{outside} of {count} lags outside, {} expected",
             number::fixed(0.05 * count as f64, 1)
         ),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: correlation.iter().enumerate().map(|(k, r)| [lag(k), *r]).collect(),
     });
     chart.levels.push((0.0, String::new()));
@@ -182,14 +182,10 @@ fn axis_chart(title: &str, points: Vec<[f64; 2]>) -> Markup {
     let ends = [points[0][0], points[points.len() - 1][0]];
     chart.bands.push(Band {
         label: "95 % interval".to_owned(),
-        role: ChartRole::Reference,
+        role: Role::Reference,
         points: ends.iter().map(|&x| [x, -1.96, 1.96]).collect(),
     });
-    chart.lines.push(ChartLine {
-        label: "innovation / σ".to_owned(),
-        role: ChartRole::Primary,
-        points,
-    });
+    chart.lines.push(Line { label: "innovation / σ".to_owned(), role: Role::Primary, points });
     chart.levels.push((0.0, String::new()));
     chart.render()
 }

@@ -1,6 +1,6 @@
 //! Time keeping of a run.
 
-use super::chart::{Band, Chart, ChartLine, ChartRole};
+use super::chart::{Band, Chart, Line, Role};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_score::summary::{LatenessQuantiles, PacingRecord, Summary};
@@ -70,13 +70,13 @@ fn over_run(pacing: &PacingRecord) -> Option<Chart> {
     let interval_s = number::plain(3600.0 * interval_h, 3);
     chart.bands.push(Band {
         label: format!("smallest to largest in {interval_s} s"),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: ends.map(|(k, (least, largest))| [at(k), us(*least), us(*largest)]).collect(),
     });
     let largest = over.largest_ns.iter().enumerate();
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: "largest".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: largest.map(|(k, largest)| [at(k), us(*largest)]).collect(),
     });
     let late = over.overruns.iter().zip(&over.largest_ns).enumerate();
@@ -90,7 +90,7 @@ fn over_run(pacing: &PacingRecord) -> Option<Chart> {
         let overruns: u64 = over.overruns.iter().sum();
         let label = number::counted(overruns, "overrun", "overruns");
         chart.levels.push((pacing.overrun_us, "limit".to_owned()));
-        chart.lines.push(ChartLine { label, role: ChartRole::Baseline, points: stems });
+        chart.lines.push(Line { label, role: Role::Baseline, points: stems });
     }
     Some(chart)
 }
@@ -109,6 +109,6 @@ fn later_than(pacing: &PacingRecord) -> Chart {
         left = left.saturating_sub(*count);
         points.push([*edge_ns as f64 / 1e3, left as f64 / total as f64]);
     }
-    chart.lines.push(ChartLine { label: "later".to_owned(), role: ChartRole::Primary, points });
+    chart.lines.push(Line { label: "later".to_owned(), role: Role::Primary, points });
     chart
 }

@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use octant_base::printable::printable;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::borrow::Cow;
 
 /// Parts of the script, in the order in which they need each other.
@@ -55,7 +55,7 @@ pub fn page(title: &str, body: &Markup) -> String {
 
 /// A section of a page, with an anchor and an entry in the contents.
 #[derive(Debug)]
-pub struct PageSection {
+pub struct Section {
     /// Anchor.
     pub id: &'static str,
     /// Heading.
@@ -64,7 +64,7 @@ pub struct PageSection {
     pub body: Markup,
 }
 
-impl PageSection {
+impl Section {
     /// Makes a section.
     #[must_use]
     pub fn new(id: &'static str, title: &str, body: Markup) -> Self {
@@ -74,7 +74,7 @@ impl PageSection {
 
 /// Renders contents and sections; sections without content are left out.
 #[must_use]
-pub fn sections(all: &[PageSection]) -> Markup {
+pub fn sections(all: &[Section]) -> Markup {
     let present = || all.iter().filter(|section| !section.body.0.is_empty());
     html! {
         nav.contents aria-label="Contents" {

@@ -9,38 +9,38 @@ use super::drift::drift;
 use super::gimbals::gimbals;
 use super::marks::marks;
 use super::pacing::pacing;
-use super::page::{PageSection, badge, page, sections};
+use super::page::{Section, badge, page, sections};
 use super::requirements::requirements;
 use super::scores::alignment;
 use maud::{Markup, html};
 use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_evidence::discrepancy;
-use octant_requirements::Verdict;
 use octant_score::summary::{CalibrationScore, HeightChannel, Summary};
 use octant_score::work::duration;
+use octant_verdict::Verdict;
 
 /// Renders the report as one HTML file.
 #[must_use]
 pub fn render(data: &ReportData) -> String {
     let summary = &data.summary;
     let all = [
-        PageSection::new(
+        Section::new(
             "requirements",
             "Requirements",
             html! { (requirements(data)) (planned_and_done(summary)) },
         ),
-        PageSection::new("faults", "Faults", faults(summary)),
-        PageSection::new("effects", "What the faults did", counterfactual(data)),
-        PageSection::new("navigation", "Navigation", drift(data)),
-        PageSection::new("alignment", "Alignment", alignment(summary, &data.units)),
-        PageSection::new("calibration", "Calibrated parameters", calibration(data)),
-        PageSection::new("noise", "Noise at rest", allan(summary)),
-        PageSection::new("gimbals", "Gimbals", gimbals(data)),
-        PageSection::new("health", "Health", events(data)),
-        PageSection::new("pacing", "Against the clock", pacing(summary)),
-        PageSection::new("discrepancies", "Discrepancies", discrepancies(data)),
-        PageSection::new("provenance", "Provenance", provenance(data)),
+        Section::new("faults", "Faults", faults(summary)),
+        Section::new("effects", "What the faults did", counterfactual(data)),
+        Section::new("navigation", "Navigation", drift(data)),
+        Section::new("alignment", "Alignment", alignment(summary, &data.units)),
+        Section::new("calibration", "Calibrated parameters", calibration(data)),
+        Section::new("noise", "Noise at rest", allan(summary)),
+        Section::new("gimbals", "Gimbals", gimbals(data)),
+        Section::new("health", "Health", events(data)),
+        Section::new("pacing", "Against the clock", pacing(summary)),
+        Section::new("discrepancies", "Discrepancies", discrepancies(data)),
+        Section::new("provenance", "Provenance", provenance(data)),
     ];
     let body = html! {
         (header(data))

@@ -1,6 +1,6 @@
 //! Errors of attitude and velocity over the navigation, and the track of the position error.
 
-use super::chart::{Band, Chart, ChartLine, ChartRole, nice_ticks, round, span};
+use super::chart::{Band, Chart, Line, Role, nice_ticks, round, span};
 use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
@@ -38,11 +38,11 @@ pub(super) fn errors(data: &ReportData) -> Markup {
                 let points = series(&data.baseline_solution);
                 if points.len() >= 2 {
                     let label = baseline.label.clone();
-                    chart.lines.push(ChartLine { label, role: ChartRole::Baseline, points });
+                    chart.lines.push(Line { label, role: Role::Baseline, points });
                 }
             }
             let label = data.summary.method.clone();
-            chart.lines.push(ChartLine { label, role: ChartRole::Primary, points });
+            chart.lines.push(Line { label, role: Role::Primary, points });
             chart.levels.push((0.0, String::new()));
             Some(chart.render())
         })
@@ -73,7 +73,7 @@ fn random_walk(data: &ReportData, name: &str) -> Option<Band> {
     let points: Vec<[f64; 3]> = floor.sigma.iter().filter_map(point).collect();
     (points.len() > 1).then(|| Band {
         label: "±1σ of random walk alone".to_owned(),
-        role: ChartRole::Reference,
+        role: Role::Reference,
         points,
     })
 }

@@ -1,8 +1,8 @@
 //! Units of the measures that a requirement can have, as the pages show them.
 
 use octant_base::display::DisplayUnits;
-use octant_requirements::measures;
 use octant_sample::parameters::ParameterGroup;
+use octant_verdict::measures;
 use std::borrow::Cow;
 
 /// Returns the unit of the measure at a path of the summary, with or without bars: `arcmin`, `nmi/h`,

@@ -1,8 +1,7 @@
 //! Charts: room for labels, ticks, and the numbers beside the drawing.
 
 use octant_report::chart::{
-    Chart, ChartLine, ChartRole, base64, decades, exponents, hour_ticks, json_text, nice_ticks,
-    thinned,
+    Chart, Line, Role, base64, decades, exponents, hour_ticks, json_text, nice_ticks, thinned,
 };
 
 /// Texts of the elements of a drawing that begin with some markup, up to its end.
@@ -17,8 +16,7 @@ fn long_labels_have_room() {
     let mut chart = Chart::new("Small", "h", "y");
     let line = |y: f64| vec![[0.0, 0.0], [1.0, y]];
     for (y, moves) in [(1.0, false), (3.4e-7, true), (-2.2e6, true)] {
-        chart.lines =
-            vec![ChartLine { label: String::new(), role: ChartRole::Primary, points: line(y) }];
+        chart.lines = vec![Line { label: String::new(), role: Role::Primary, points: line(y) }];
         let drawing = chart.render().into_string();
         let left: f64 = parts(&drawing, "class=\"axis\" d=\"M", " ")[0].parse().unwrap();
         let labels: Vec<&str> = parts(&drawing, "class=\"tick y\"", "</text>")

@@ -8,8 +8,6 @@ use octant_report::{
     GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance,
     SolutionSeries, compare as page, run,
 };
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Comparison as Sign, Verdict};
 use octant_sample::Parameters;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use octant_score::compare::{Claim, Maxima, MethodComparison, PairedRun, compare};
@@ -21,6 +19,8 @@ use octant_score::reference::{ReferenceInput, reference};
 use octant_score::summary::{
     BaselineMethod, CalibrationScore, HealthCounts, HeightChannel, NavigationScore, SCHEMA, Summary,
 };
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{Comparison as Sign, Verdict};
 use std::collections::BTreeMap;
 
 const LATITUDE: f64 = 30.5 * DEG;

@@ -1,8 +1,8 @@
 //! Findings about the equipment of a run, from its certificates and the day on which the run ended.
 
 use super::finding::{Finding, FindingSubject};
-use octant_requirements::Verdict;
-use octant_requirements::equipment::{Day, Equipment};
+use octant_verdict::Verdict;
+use octant_verdict::equipment::{Day, Equipment};
 
 /// Findings about the equipment of a run that ended on a day: one for each piece whose certificate had
 /// expired. Without a known day there is one for every piece.

@@ -1,6 +1,6 @@
 //! Findings other than requirements that affect the verdict.
 
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde::{Deserialize, Serialize};
 
 /// Subject of a finding.

@@ -9,8 +9,8 @@ pub use super::finding::{Finding, FindingSubject};
 use super::summary::{BaselineMethod, CalibrationScore, FaultResult, Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
 use super::work::{RunPart, Short, Work};
-use octant_requirements::Verdict;
-use octant_requirements::verdict::LimitCheck;
+use octant_verdict::Verdict;
+use octant_verdict::verdict::LimitCheck;
 use std::convert::Infallible;
 use std::fmt::Display;
 
@@ -131,13 +131,14 @@ pub fn derive(summary: &Summary) -> Derived {
     Derived { verdict, reasons }
 }
 
-type Told = (Verdict, Option<String>);
+/// A verdict with its reason, where it needs one.
+type Reasoned = (Verdict, Option<String>);
 
 /// Verdicts that affect the result: of the unit and the run, and of the bench.
 fn sides(
     summary: &Summary,
     results: &mut dyn Iterator<Item = &RequirementResult>,
-) -> (Vec<Told>, Vec<(Verdict, String)>) {
+) -> (Vec<Reasoned>, Vec<(Verdict, String)>) {
     let (mut unit, mut bench) = (Vec::new(), Vec::new());
     for finding in &summary.findings {
         match finding.about {
@@ -249,7 +250,7 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
 /// True if a broken limit stays broken in any case: that of a maximum, a count, a mark that was
 /// reached, or a result of a completed calibration.
 fn stays_broken(summary: &Summary, result: &RequirementResult) -> bool {
-    use octant_requirements::Comparison;
+    use octant_verdict::Comparison;
     let upper = matches!(result.comparison, Comparison::AtMost | Comparison::Below);
     let path = result.measure.trim_matches('|');
     let name = path.rsplit('.').next().unwrap_or(path);

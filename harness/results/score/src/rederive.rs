@@ -7,8 +7,8 @@
 use super::judge::{Finding, FindingSubject, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Comparison, Verdict};
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{Comparison, Verdict};
 
 /// Derives the results of a stored summary's requirements from its measures again: of the stored
 /// results, only ids, measures, limits, uncertainties and reasons are used, and whether there was a

@@ -20,8 +20,8 @@ use super::verdict::RequirementResult;
 use super::work::Work;
 use octant_base::not_finite;
 use octant_base::printable::printable;
-use octant_requirements::Verdict;
-use octant_requirements::decision::Decided;
+use octant_verdict::Verdict;
+use octant_verdict::decision::Decided;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 

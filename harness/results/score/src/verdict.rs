@@ -1,7 +1,7 @@
 //! Comparison of a measure with its limit.
 
-use octant_requirements::decision::in_band;
-use octant_requirements::verdict::{Comparison, LimitCheck, Verdict};
+use octant_verdict::decision::in_band;
+use octant_verdict::verdict::{Comparison, LimitCheck, Verdict};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

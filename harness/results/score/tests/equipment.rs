@@ -1,9 +1,9 @@
 //! Certificates that have expired.
 
-use octant_requirements::Verdict;
-use octant_requirements::equipment::{Day, Equipment};
 use octant_score::equipment::findings;
 use octant_score::judge::FindingSubject;
+use octant_verdict::Verdict;
+use octant_verdict::equipment::{Day, Equipment};
 
 #[test]
 fn a_certificate_holds_through_its_last_day() {

@@ -1,7 +1,7 @@
 //! JUnit XML as nextest writes it.
 
-use octant_requirements::Verdict;
 use octant_score::junit::{JunitCase, JunitCases, JunitSuite, document, write_document};
+use octant_verdict::Verdict;
 use std::io;
 
 fn case(verdict: Verdict, message: &str) -> JunitCase {

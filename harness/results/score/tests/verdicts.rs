@@ -1,12 +1,12 @@
 //! Verdicts, the form of the summary, JUnit.
 
 use crate::common::{judged, requirement, silent, summary};
-use octant_requirements::{Comparison, Verdict};
 use octant_score::judge::{Finding, FindingSubject, NO_REQUIREMENT, derive, judge, judge_by};
 use octant_score::junit::junit;
 use octant_score::summary::{Summary, SummaryError};
 use octant_score::verdict::{MeasureError, evaluate, measure};
 use octant_score::work::Work;
+use octant_verdict::{Comparison, Verdict};
 use proptest::prelude::*;
 
 #[test]

@@ -6,10 +6,10 @@ use super::state::RunState;
 use super::tail::{PollEnd, Tail, TailError};
 use octant_evidence::ended;
 use octant_recorder::reader::Item;
-use octant_requirements::Verdict;
 use octant_score::judge::derive;
 use octant_score::rederive;
 use octant_score::summary::Summary;
+use octant_verdict::Verdict;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 

@@ -3,10 +3,10 @@
 use super::follow::{Follow, Stage};
 use super::state::{FaultState, RunState};
 use octant_base::number::{counted, fixed, significant};
-use octant_requirements::Verdict;
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Output};
 use octant_scenario::NumberedStops;
+use octant_verdict::Verdict;
 use std::fmt::Write as _;
 
 /// Renders a time of a run: `9 h 34 min`, `12.5 s`.

@@ -8,9 +8,10 @@
 //! CASES has a line for each case: its id, the verdict of each check as `ID=verdict`.
 #![allow(clippy::print_stdout)]
 
-use octant_requirements::Verdict;
-use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult};
-use octant_requirements::{Imported, exchange, file, strictdoc};
+use octant_requirements::exchange::Anything;
+use octant_requirements::{Imported, exchange, strictdoc};
+use octant_verdict::Verdict;
+use octant_verdict::trace::{CampaignTrace, TracedCase, TracedResult};
 use std::error::Error;
 use std::path::Path;
 
@@ -25,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn read(path: &str) -> Result<Imported, Box<dyn Error>> {
-    let imported = exchange::read(Path::new(path), None, &file::Anything)?;
+    let imported = exchange::read(Path::new(path), None, &Anything)?;
     for note in &imported.notes {
         println!("{path}: {note}");
     }

@@ -1,63 +1,7 @@
-//! Problems of a file of requirements, with their places, and notes of an import.
+//! Notes of an import, and requirements that a format can't hold.
 
-use crate::requirement::Requirements;
+use octant_verdict::Requirements;
 use std::fmt;
-
-/// One problem.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RequirementsProblem {
-    /// Line in the file, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// Path of the field, `requirements.NAV-1.limit`; empty if the problem isn't in a field.
-    pub path: String,
-    /// Value found and value expected.
-    pub message: String,
-}
-
-impl RequirementsProblem {
-    pub(crate) fn new(
-        (line, column): (usize, usize),
-        path: impl Into<String>,
-        message: impl Into<String>,
-    ) -> Self {
-        Self { line, column, path: path.into(), message: message.into() }
-    }
-}
-
-/// Error of a file of requirements: at least one problem, in the order of the file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RequirementsError {
-    /// Name of the file.
-    pub file: String,
-    /// The problems.
-    pub problems: Vec<RequirementsProblem>,
-}
-
-impl RequirementsError {
-    pub(crate) fn one(file: &str, problem: RequirementsProblem) -> Self {
-        Self { file: file.to_owned(), problems: vec![problem] }
-    }
-}
-
-impl fmt::Display for RequirementsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, problem) in self.problems.iter().enumerate() {
-            if index > 0 {
-                writeln!(f)?;
-            }
-            write!(f, "{}:{}:{}: ", self.file, problem.line, problem.column)?;
-            if !problem.path.is_empty() {
-                write!(f, "{}: ", problem.path)?;
-            }
-            f.write_str(&problem.message)?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for RequirementsError {}
 
 /// Error of requirements that a format can't hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -145,19 +89,5 @@ pub(crate) fn listed<T: AsRef<str>>(names: &[T]) -> String {
     match names.len().checked_sub(SHOWN) {
         None | Some(0) => shown.join(", "),
         Some(more) => format!("{} and {more} more", shown.join(", ")),
-    }
-}
-
-/// Text `did you mean "X"?`, if a name is similar, with the list of known names.
-pub(crate) fn suggestion(found: &str, known: &[&str]) -> String {
-    let list = known.join(", ");
-    let nearest = known
-        .iter()
-        .map(|name| (strsim::jaro_winkler(found, name), name))
-        .filter(|(similarity, _)| *similarity > 0.75)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    match nearest {
-        Some((_, name)) => format!("did you mean \"{name}\"? known: {list}"),
-        None => format!("known: {list}"),
     }
 }

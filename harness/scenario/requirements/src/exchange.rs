@@ -1,17 +1,37 @@
 //! Files of requirements, read and written by the format that their name tells.
 
-use crate::document::decode;
-use crate::error::{ExportError, Imported, RequirementsError};
-use crate::file::{self, Checker};
+use crate::encoding::decode;
+use crate::error::{ExportError, Imported};
 use crate::format::ExchangeFormat;
 use crate::losses::losses;
 use crate::mapping::{self, Mapping};
-use crate::{needs, reqif, sdoc};
+use crate::{needs, reqif, sdoc, xhtml};
+use octant_verdict::RequirementsError;
+use octant_verdict::file::{self, Checker};
+use octant_verdict::requirement::Limit;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Most bytes of a file that is read.
 const BYTES: u64 = 512 << 20;
+
+/// Accepts every measure and every limit: for moving requirements between formats.
+#[derive(Clone, Copy, Debug)]
+pub struct Anything;
+
+impl Checker for Anything {
+    fn measure(&self, _: &str) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn limit(&self, _: &str, _: &Limit) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn formatted(&self, xhtml: &str) -> Result<(), String> {
+        xhtml::check(xhtml).map_err(|error| error.to_string())
+    }
+}
 
 /// Reason why requirements can't be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -192,11 +212,11 @@ fn store(path: &Path, bytes: &[u8], force: bool) -> Result<(), ExchangeError> {
 #[cfg(feature = "doorstop")]
 mod folder {
     use super::{ExchangeError, bytes, store};
-    use crate::document::decode;
     use crate::doorstop;
+    use crate::encoding::decode;
     use crate::error::{Imported, Note, listed};
     use crate::mapping::Mapping;
-    use crate::requirement::Requirements;
+    use octant_verdict::requirement::Requirements;
     use std::io;
     use std::path::Path;
 
@@ -267,7 +287,7 @@ mod folder {
     use super::ExchangeError;
     use crate::error::Imported;
     use crate::mapping::Mapping;
-    use crate::requirement::Requirements;
+    use octant_verdict::requirement::Requirements;
     use std::path::Path;
 
     pub(super) fn read(path: &Path, _: &Mapping) -> Result<Imported, ExchangeError> {

@@ -1,6 +1,6 @@
 //! Order and nesting of sections and requirements.
 
-use crate::requirement::Requirements;
+use octant_verdict::requirement::Requirements;
 
 /// A step through the hierarchy of a document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

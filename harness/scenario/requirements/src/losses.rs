@@ -2,8 +2,8 @@
 
 use crate::error::{Imported, listed};
 use crate::format::ExchangeFormat;
-use crate::requirement::{AttributeKind, Requirement, Requirements};
 use crate::xhtml;
+use octant_verdict::requirement::{AttributeKind, Requirement, Requirements};
 use std::collections::HashSet;
 
 /// Lists the parts that a file of this format can't keep.

@@ -6,10 +6,10 @@
 //! verifies, whatever the verdict is.
 
 use crate::error::ExportError;
-use crate::requirement::Requirements;
 use crate::sdoc::legal_uid;
-use crate::trace::{CampaignTrace, TraceLink, TraceRow};
-use crate::verdict::Verdict;
+use octant_verdict::requirement::Requirements;
+use octant_verdict::trace::{CampaignTrace, TraceLink, TraceRow};
+use octant_verdict::verdict::Verdict;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 

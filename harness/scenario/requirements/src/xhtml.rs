@@ -10,13 +10,19 @@ const XML: &str = "http://www.w3.org/XML/1998/namespace";
 
 /// Text that is no XHTML.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum XhtmlError {
+pub enum XhtmlError {
     /// It isn't well-formed.
-    #[error("not XHTML: {0}")]
-    Form(roxmltree::Error),
+    #[error("not XHTML: {error}")]
+    Form {
+        /// Reason.
+        error: roxmltree::Error,
+    },
     /// It has elements of another namespace.
-    #[error("found {0}, expected elements of XHTML")]
-    Foreign(String),
+    #[error("found {name}, expected elements of XHTML")]
+    Foreign {
+        /// Name of the first of them.
+        name: String,
+    },
 }
 
 /// Writes a text as one `div`, with the prefix `xhtml`.
@@ -44,14 +50,17 @@ pub(crate) fn of_formatted(xhtml: &str, text: &str) -> Option<String> {
     Some(serialized(root, "xhtml:"))
 }
 
-/// Plain text of formatted text.
-pub(crate) fn plain(xhtml: &str) -> Result<String, XhtmlError> {
+/// Checks that a text can be the formatting of one.
+///
+/// # Errors
+/// If it isn't well-formed, or has elements of another namespace.
+pub fn check(xhtml: &str) -> Result<(), XhtmlError> {
     let wrapped = wrapped(xhtml);
-    let document = Document::parse(&wrapped).map_err(XhtmlError::Form)?;
-    let found = read(document.root_element());
-    match found.foreign.first() {
-        Some(name) => Err(XhtmlError::Foreign(name.clone())),
-        None => Ok(found.text),
+    let document = Document::parse(&wrapped).map_err(|error| XhtmlError::Form { error })?;
+    let foreign = read(document.root_element()).foreign;
+    match foreign.into_iter().next() {
+        Some(name) => Err(XhtmlError::Foreign { name }),
+        None => Ok(()),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use octant_requirements::mapping::Mapping;
 use octant_requirements::reqif::{self, ReqIfArchiveError};
-use octant_requirements::requirement::{Requirement, Requirements, Verification};
 use octant_requirements::{Attachment, Imported};
+use octant_verdict::requirement::{Requirement, Requirements, Verification};
 use std::io::{Cursor, Write as _};
 use zip::write::{SimpleFileOptions, ZipWriter};
 
@@ -124,7 +124,7 @@ fn a_bomb_is_refused_while_it_is_unpacked() {
 fn a_picture_that_is_missing_is_named() {
     let mut all = requirements("T", &["A"]);
     all.requirements[0].text = "See".to_owned();
-    all.requirements[0].formatted = vec![octant_requirements::requirement::FormattedText {
+    all.requirements[0].formatted = vec![octant_verdict::requirement::FormattedText {
         name: "ReqIF.Text".to_owned(),
         xhtml: "<p>See<object data=\"p.png\" type=\"image/png\"/></p>".to_owned(),
     }];

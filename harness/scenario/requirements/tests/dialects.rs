@@ -1,13 +1,14 @@
 //! Files as other tools write them.
 
 use octant_requirements::exchange;
-use octant_requirements::file::Anything;
+use octant_requirements::exchange::Anything;
 use octant_requirements::format::ExchangeFormat;
 use octant_requirements::losses::losses;
 use octant_requirements::mapping::{self, Mapping};
-use octant_requirements::requirement::{Limit, Requirement, Verification};
-use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult};
-use octant_requirements::{Comparison, Imported, Verdict, reqif};
+use octant_requirements::{Imported, reqif};
+use octant_verdict::requirement::{Limit, Requirement, Verification};
+use octant_verdict::trace::{CampaignTrace, TracedCase, TracedResult};
+use octant_verdict::{Comparison, Verdict};
 use std::path::{Path, PathBuf};
 
 fn sample(name: &str) -> PathBuf {
@@ -41,8 +42,8 @@ fn survives(imported: &Imported) {
     let back = reqif::read_archive(&bytes, "back.reqifz", &Mapping::default()).unwrap();
     assert_eq!(back.requirements, imported.requirements);
     assert_eq!(back.attachments, imported.attachments);
-    let toml = octant_requirements::file::write(&imported.requirements);
-    let back = octant_requirements::file::read(&toml, "back.toml", &Anything).unwrap();
+    let toml = octant_verdict::file::write(&imported.requirements);
+    let back = octant_verdict::file::read(&toml, "back.toml", &Anything).unwrap();
     assert_eq!(back, imported.requirements, "{toml}");
 }
 
@@ -255,8 +256,8 @@ fn the_encoding_of_a_file_is_known_or_refused() {
 #[test]
 fn a_requirement_of_another_tool_is_inconclusive_until_somebody_says_how_it_is_verified() {
     let found = read("doors.reqif");
-    let toml = octant_requirements::file::write(&found.requirements);
-    let read = octant_requirements::file::read(&toml, "r.toml", &Anything).unwrap();
+    let toml = octant_verdict::file::write(&found.requirements);
+    let read = octant_verdict::file::read(&toml, "r.toml", &Anything).unwrap();
     assert_eq!(toml.matches("verification = \"open\"").count(), 3, "{toml}");
     let trace = CampaignTrace::new(&read, &[]);
     assert_eq!(trace.verdict(), Verdict::Inconclusive);
@@ -267,7 +268,7 @@ fn a_requirement_of_another_tool_is_inconclusive_until_somebody_says_how_it_is_v
         "measure = \"done\"\ncomparison = \">=\"\nlimit = 1",
         1,
     );
-    let read = octant_requirements::file::read(&passed, "r.toml", &Anything).unwrap();
+    let read = octant_verdict::file::read(&passed, "r.toml", &Anything).unwrap();
     let result = TracedResult {
         verdict: Verdict::Pass,
         checks: vec![("3".to_owned(), Verdict::Pass)],

@@ -1,13 +1,13 @@
 //! Folders of Doorstop.
 
-use octant_requirements::file::Anything;
+use octant_requirements::exchange::Anything;
 use octant_requirements::format::ExchangeFormat;
 use octant_requirements::losses::losses;
 use octant_requirements::mapping::{self, Mapping};
-use octant_requirements::requirement::{
+use octant_requirements::{Imported, doorstop, exchange};
+use octant_verdict::requirement::{
     AttributeKind, ForeignAttribute, Parent, Requirement, Requirements, Verification,
 };
-use octant_requirements::{Imported, doorstop, exchange};
 
 /// Settings and items as Doorstop 3.2 writes them.
 const SETTINGS: &str =

@@ -1,12 +1,13 @@
 //! Any requirements survive every format unchanged.
 
-use octant_requirements::Comparison;
 use octant_requirements::mapping::{self, Mapping};
-use octant_requirements::requirement::{
+use octant_requirements::{exchange, needs, reqif, sdoc};
+use octant_verdict::Comparison;
+use octant_verdict::file;
+use octant_verdict::requirement::{
     AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
     Parent, Requirement, Requirements, Verification,
 };
-use octant_requirements::{file, needs, reqif, sdoc};
 use proptest::collection::vec;
 use proptest::option::of as maybe;
 use proptest::prelude::*;
@@ -254,7 +255,7 @@ proptest! {
     #[test]
     fn toml_comes_back_as_it_was(all in requirements().prop_map(nested)) {
         let text = file::write(&all);
-        let back = file::read(&text, "test.toml", &file::Anything).map_err(|e| format!("{e}\n{text}"));
+        let back = file::read(&text, "test.toml", &exchange::Anything).map_err(|e| format!("{e}\n{text}"));
         prop_assert_eq!(back.unwrap(), all);
     }
 
@@ -327,7 +328,7 @@ proptest! {
         for text in [&text, &lines, &format!("[DOCUMENT]\nTITLE: x\n\n{lines}")] {
             let _ = sdoc::read(text, "x");
             let _ = reqif::read(text, "x");
-            let _ = file::read(text, "x", &file::Anything);
+            let _ = file::read(text, "x", &exchange::Anything);
             let _ = needs::read(text, "x", &Mapping::default());
             let _ = mapping::read(text, "x");
         }

@@ -3,9 +3,7 @@
 use octant_requirements::Imported;
 use octant_requirements::mapping::{self, Mapping};
 use octant_requirements::needs;
-use octant_requirements::requirement::{
-    AttributeKind, Parent, Requirement, Requirements, Verification,
-};
+use octant_verdict::requirement::{AttributeKind, Parent, Requirement, Requirements, Verification};
 
 /// As the builder `needs` writes it, with fewer fields.
 const FILE: &str = r#"{"current_version": "1.0", "project": "INS", "versions": {"0.9": {"needs": {}},

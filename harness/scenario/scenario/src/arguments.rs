@@ -1,15 +1,13 @@
 //! Arguments of a command line that change a document: `--set` and `--fire`.
 
-use super::document::{
-    DocumentNode, DocumentTable, DocumentValue, controls_of_argument, parse_argument,
-};
 use super::error::{Place, Problem};
 use super::keys::{Kind, SCENARIO};
 use octant_base::names::suggestion;
+use octant_toml_tree::{Node, Table, Value, controls_of_argument, parse_argument};
 
 /// Applies a `--set KEY=VALUE` to a document: KEY is a dotted path, VALUE is TOML or a text without
 /// quotes.
-pub fn override_set(document: &mut DocumentTable, argument: &str) -> Result<(), Problem> {
+pub fn override_set(document: &mut Table, argument: &str) -> Result<(), Problem> {
     let problem = |path: &str, message: String| Problem {
         place: Place::Argument(argument.to_owned()),
         path: path.to_owned(),
@@ -66,24 +64,20 @@ pub fn override_set(document: &mut DocumentTable, argument: &str) -> Result<(), 
 }
 
 /// Table of the fault with an id.
-fn fault_of<'a>(
-    document: &'a mut DocumentTable,
-    id: &str,
-) -> Result<&'a mut DocumentTable, String> {
-    let id_of = |node: &DocumentNode| match &node.value {
-        DocumentValue::Table(table) => match &table.get("id")?.value {
-            DocumentValue::Text(id) => Some(id.clone()),
+fn fault_of<'a>(document: &'a mut Table, id: &str) -> Result<&'a mut Table, String> {
+    let id_of = |node: &Node| match &node.value {
+        Value::Table(table) => match &table.get("id")?.value {
+            Value::Text(id) => Some(id.clone()),
             _ => None,
         },
         _ => None,
     };
-    let Some(DocumentNode { value: DocumentValue::Array(faults), .. }) = document.get_mut("faults")
-    else {
+    let Some(Node { value: Value::Array(faults), .. }) = document.get_mut("faults") else {
         return Err("the scenario has no faults".to_owned());
     };
     let ids: Vec<String> = faults.iter().filter_map(id_of).collect();
     match faults.iter_mut().find(|node| id_of(node).is_some_and(|found| found == id)) {
-        Some(DocumentNode { value: DocumentValue::Table(fault), .. }) => Ok(fault),
+        Some(Node { value: Value::Table(fault), .. }) => Ok(fault),
         _ => {
             let known = suggestion(id, ids.iter().map(String::as_str), "faults");
             Err(format!("no fault has the id {id:?}, {known}"))
@@ -92,25 +86,24 @@ fn fault_of<'a>(
 }
 
 /// Applies a `--fire ID=TIME`: adds the time to those of a manual trigger.
-pub(crate) fn fire(document: &mut DocumentTable, argument: &str) -> Result<(), Problem> {
+pub(crate) fn fire(document: &mut Table, argument: &str) -> Result<(), Problem> {
     let place = Place::Fire(argument.to_owned());
     let problem = |message: String| Problem { place: place.clone(), path: String::new(), message };
     let Some((id, time)) = argument.rsplit_once('=') else {
         return Err(problem("expected ID=TIME, such as spike-1=\"5050 s\"".to_owned()));
     };
     let fault = fault_of(document, id).map_err(problem)?;
-    let Some(DocumentNode { value: DocumentValue::Table(trigger), .. }) = fault.get_mut("trigger")
-    else {
+    let Some(Node { value: Value::Table(trigger), .. }) = fault.get_mut("trigger") else {
         return Err(problem(format!("fault {id:?} has no trigger that can be fired by hand")));
     };
     if trigger.get("manual").is_none() {
         return Err(problem(format!("the trigger of fault {id:?} is not manual")));
     }
     let node = parse_argument(time, argument);
-    let node = DocumentNode { place: place.clone(), ..node };
+    let node = Node { place: place.clone(), ..node };
     match trigger.get_mut("fire") {
-        Some(DocumentNode { value: DocumentValue::Array(times), .. }) => times.push(node),
-        _ => trigger.set("fire", DocumentNode { value: DocumentValue::Array(vec![node]), place }),
+        Some(Node { value: Value::Array(times), .. }) => times.push(node),
+        _ => trigger.set("fire", Node { value: Value::Array(vec![node]), place }),
     }
     Ok(())
 }

@@ -20,13 +20,14 @@
 //! uniform = [1, 1000]
 //! ```
 
-use crate::document::{self, DocumentNode, DocumentTable, DocumentValue};
 use crate::error::{Problem, ScenarioError};
+pub use crate::keys::Design;
 use crate::keys::{
     At, CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, Keys, LimitsKeys, MemberKeys,
 };
 use crate::other_format;
 use octant_base::names::suggestion;
+use octant_toml_tree::{Node, Table, Value};
 use std::path::{Path, PathBuf};
 
 /// A campaign.
@@ -52,16 +53,6 @@ pub struct Campaign {
     pub limits: LimitsSpec,
     /// Early stopping.
     pub stop: Option<StopSpec>,
-}
-
-/// Design of the draws over the replicates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Design {
-    /// Independent draws.
-    MonteCarlo,
-    /// One draw in each of as many strips as there are replicates (McKay, Beckman and Conover,
-    /// 1979).
-    LatinHypercube,
 }
 
 /// A scenario of a campaign.
@@ -280,12 +271,12 @@ fn unique<'a>(
 }
 
 /// Lists the settings of a table as `KEY=VALUE`; nested tables are parts of keys.
-fn settings(table: &DocumentTable) -> Vec<String> {
-    fn walk(prefix: &str, table: &DocumentTable, all: &mut Vec<String>) {
+fn settings(table: &Table) -> Vec<String> {
+    fn walk(prefix: &str, table: &Table, all: &mut Vec<String>) {
         for entry in &table.entries {
-            let path = document::join(prefix, &entry.key);
+            let path = octant_toml_tree::join(prefix, &entry.key);
             match &entry.node.value {
-                DocumentValue::Table(table) => walk(&path, table, all),
+                Value::Table(table) => walk(&path, table, all),
                 value => all.push(format!("{path}={}", toml(value))),
             }
         }
@@ -295,15 +286,15 @@ fn settings(table: &DocumentTable) -> Vec<String> {
     all
 }
 
-fn toml(value: &DocumentValue) -> String {
+fn toml(value: &Value) -> String {
     let mut text = String::new();
-    document::write_value(value, &mut text);
+    octant_toml_tree::write_value(value, &mut text);
     text
 }
 
 fn levels(keys: FactorKeys) -> Result<Levels, Problem> {
     let key = |name: At<String>, key: Option<String>| key.unwrap_or(name.value);
-    let values = |values: &At<Vec<DocumentNode>>| {
+    let values = |values: &At<Vec<Node>>| {
         once(values, values.iter().map(|entry| toml(&entry.value)).collect())
     };
     Ok(match keys {

@@ -3,20 +3,20 @@
 //! Every problem of a single value is found here, so that all are reported at once; problems of several
 //! values together are found when the scenario is read.
 
-use super::document::join;
+use octant_toml_tree::join;
 
 use super::condition;
-use super::document::{DocumentNode, DocumentTable, DocumentValue, number, parse_default};
 use super::error::{Place, Problem};
 use super::keys::{Bounds, Default, Key, Kind, Section, Variants};
 use super::ports;
 use super::quantity::{self, UnitDimension, explain};
 use octant_base::names::suggestion;
 use octant_faults::Channels;
+use octant_toml_tree::{Node, Table, Value, number, parse_default};
 
 /// Checks a table and adds its defaults; problems are added to `problems`.
 pub(crate) fn complete(
-    table: &mut DocumentTable,
+    table: &mut Table,
     section: &'static Section,
     path: &str,
     place: &Place,
@@ -44,10 +44,7 @@ pub(crate) fn complete(
                 Default::Value(text) => table.set(key.name, parse_default(text)),
                 Default::Section => table.set(
                     key.name,
-                    DocumentNode {
-                        value: DocumentValue::Table(DocumentTable::default()),
-                        place: Place::Default,
-                    },
+                    Node { value: Value::Table(Table::default()), place: Place::Default },
                 ),
                 Default::Required => {
                     let expected = expected(&key.kind);
@@ -66,7 +63,7 @@ pub(crate) fn complete(
 
 /// Checks one value against the kind of its key.
 pub(crate) fn check(
-    node: &mut DocumentNode,
+    node: &mut Node,
     key: &'static Key,
     kind: &'static Kind,
     path: &str,
@@ -83,26 +80,26 @@ pub(crate) fn check(
             Some(kind) => check(node, key, kind, path, problems),
             None => report(format!("found {found}, expected {}", expected(kind))),
         },
-        (Kind::Text, DocumentValue::Text(_)) | (Kind::Boolean, DocumentValue::Boolean(_)) => {}
-        (Kind::Uri(schemes), DocumentValue::Text(text)) => {
+        (Kind::Text, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => {}
+        (Kind::Uri(schemes), Value::Text(text)) => {
             let scheme = text.split(':').next().unwrap_or_default();
             if !schemes.iter().any(|(known, _)| *known == scheme) {
                 let known = suggestion(scheme, schemes.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }
         }
-        (Kind::Choice(choices), DocumentValue::Text(text)) => {
+        (Kind::Choice(choices), Value::Text(text)) => {
             if !choices.iter().any(|(known, _)| known == text) {
                 let known = suggestion(text, choices.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }
         }
-        (Kind::Choices(choices), DocumentValue::Array(entries)) => {
+        (Kind::Choices(choices), Value::Array(entries)) => {
             for entry in entries.iter() {
                 let known = |text: &String| choices.contains(&text.as_str());
-                if !matches!(&entry.value, DocumentValue::Text(text) if known(text)) {
+                if !matches!(&entry.value, Value::Text(text) if known(text)) {
                     let found = entry.value.describe();
-                    let text = if let DocumentValue::Text(text) = &entry.value { text } else { "" };
+                    let text = if let Value::Text(text) = &entry.value { text } else { "" };
                     let known = suggestion(text, choices.iter().copied(), "possible");
                     problems.push(Problem {
                         place: entry.place.clone(),
@@ -112,7 +109,7 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Integer(from, to), DocumentValue::Integer(number)) => {
+        (Kind::Integer(from, to), Value::Integer(number)) => {
             if !(*from..=*to).contains(number) {
                 let kind = expected(kind);
                 report(match (key.name, *number > *to) {
@@ -124,13 +121,13 @@ pub(crate) fn check(
                 });
             }
         }
-        (Kind::Number(bounds), value @ (DocumentValue::Integer(_) | DocumentValue::Number(_))) => {
+        (Kind::Number(bounds), value @ (Value::Integer(_) | Value::Number(_))) => {
             if !number(value).is_some_and(|value| bounds.contain(value)) {
                 report(format!("found {found}, expected a number {}", bounds.words()));
             }
         }
-        (Kind::Numbers(count), DocumentValue::Array(entries)) => {
-            let finite = |entry: &DocumentNode| number(&entry.value).is_some_and(f64::is_finite);
+        (Kind::Numbers(count), Value::Array(entries)) => {
+            let finite = |entry: &Node| number(&entry.value).is_some_and(f64::is_finite);
             if entries.len() != *count || !entries.iter().all(finite) {
                 report(format!("found {found}, expected {count} numbers"));
             }
@@ -140,7 +137,7 @@ pub(crate) fn check(
                 report(message);
             }
         }
-        (Kind::Quantities(dimension, count), DocumentValue::Array(entries)) => {
+        (Kind::Quantities(dimension, count), Value::Array(entries)) => {
             if entries.len() != *count {
                 report(format!(
                     "found {} entries, expected {count}, each {}",
@@ -158,10 +155,10 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Vector(dimensions), DocumentValue::Array(entries)) => {
+        (Kind::Vector(dimensions), Value::Array(entries)) => {
             check_vector(entries, dimensions, path, &place, problems);
         }
-        (Kind::Times, DocumentValue::Array(entries)) => {
+        (Kind::Times, Value::Array(entries)) => {
             for (index, entry) in entries.iter().enumerate() {
                 let checked =
                     check_quantity(&entry.value, &[UnitDimension::TIME], Bounds::NotNegative);
@@ -171,14 +168,14 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Condition, DocumentValue::Text(text)) => {
+        (Kind::Condition, Value::Text(text)) => {
             if let Err(message) = condition::parse(text) {
                 report(format!("found {found}, {message}"));
             }
         }
-        (Kind::Channels, DocumentValue::Text(_) | DocumentValue::Array(_)) => {
+        (Kind::Channels, Value::Text(_) | Value::Array(_)) => {
             let entries = match &node.value {
-                DocumentValue::Array(entries) => entries.as_slice(),
+                Value::Array(entries) => entries.as_slice(),
                 _ => std::slice::from_ref(&*node),
             };
             if entries.is_empty() {
@@ -186,7 +183,7 @@ pub(crate) fn check(
             }
             let names = Channels::NAMES.iter().map(|(name, _)| *name);
             for entry in entries {
-                let text = if let DocumentValue::Text(text) = &entry.value { text } else { "" };
+                let text = if let Value::Text(text) = &entry.value { text } else { "" };
                 if Channels::named(text).is_none() {
                     let known = suggestion(text, names.clone(), "possible");
                     let message = format!("found {}, {known}", entry.value.describe());
@@ -195,9 +192,9 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Limit, DocumentValue::Integer(_)) => {}
-        (Kind::Limit, DocumentValue::Number(value)) if value.is_finite() => {}
-        (Kind::Limit, DocumentValue::Text(text)) => {
+        (Kind::Limit, Value::Integer(_)) => {}
+        (Kind::Limit, Value::Number(value)) if value.is_finite() => {}
+        (Kind::Limit, Value::Text(text)) => {
             if let Err(error) = quantity::parse(text) {
                 report(format!(
                     "found {found}, {}; expected a quantity or a number",
@@ -205,15 +202,15 @@ pub(crate) fn check(
                 ));
             }
         }
-        (Kind::Column, DocumentValue::Integer(1..=10_000) | DocumentValue::Text(_)) => {}
+        (Kind::Column, Value::Integer(1..=10_000) | Value::Text(_)) => {}
         (Kind::Port(channel), _) => problems.extend(ports::ports(node, channel, path).err()),
-        (Kind::Settings, DocumentValue::Table(table)) => {
+        (Kind::Settings, Value::Table(table)) => {
             problems.extend(ports::settings(table, path).err())
         }
-        (Kind::Values, DocumentValue::Array(entries)) if !entries.is_empty() => {}
-        (Kind::Names, DocumentValue::Array(entries))
-            if entries.iter().all(|entry| matches!(entry.value, DocumentValue::Text(_))) => {}
-        (Kind::Lists, DocumentValue::Array(entries)) if !entries.is_empty() => {
+        (Kind::Values, Value::Array(entries)) if !entries.is_empty() => {}
+        (Kind::Names, Value::Array(entries))
+            if entries.iter().all(|entry| matches!(entry.value, Value::Text(_))) => {}
+        (Kind::Lists, Value::Array(entries)) if !entries.is_empty() => {
             for entry in entries.iter().filter(|entry| !is_names(entry)) {
                 let found = entry.value.describe();
                 problems.push(Problem {
@@ -224,19 +221,19 @@ pub(crate) fn check(
             }
         }
         (Kind::Codes, value) if ports::codes(value).is_some_and(|codes| !codes.is_empty()) => {}
-        (Kind::Table(section), DocumentValue::Table(table)) => {
+        (Kind::Table(section), Value::Table(table)) => {
             complete(table, section, path, &place, problems);
         }
-        (Kind::Variants(variants), DocumentValue::Table(table)) => {
+        (Kind::Variants(variants), Value::Table(table)) => {
             complete_variant(table, variants, path, &place, problems);
         }
-        (Kind::VariantTables(variants, at_most), DocumentValue::Array(entries)) => {
+        (Kind::VariantTables(variants, at_most), Value::Array(entries)) => {
             if entries.len() > *at_most {
                 report(format!("found {} entries, expected at most {at_most}", entries.len()));
             }
             for (index, entry) in entries.iter_mut().enumerate() {
                 let (path, place) = (format!("{path}[{index}]"), entry.place.clone());
-                if let DocumentValue::Table(table) = &mut entry.value {
+                if let Value::Table(table) = &mut entry.value {
                     complete_variant(table, variants, &path, &place, problems);
                 } else {
                     let message = format!("found {}, expected a table", entry.value.describe());
@@ -244,7 +241,7 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Tables(section, at_least, at_most), DocumentValue::Array(entries)) => {
+        (Kind::Tables(section, at_least, at_most), Value::Array(entries)) => {
             if !(*at_least..=*at_most).contains(&entries.len()) {
                 let count = entries.len();
                 report(format!("found {count} entries, expected {at_least} to {at_most}"));
@@ -253,9 +250,7 @@ pub(crate) fn check(
                 let path = format!("{path}[{index}]");
                 let place = entry.place.clone();
                 match &mut entry.value {
-                    DocumentValue::Table(table) => {
-                        complete(table, section, &path, &place, problems)
-                    }
+                    Value::Table(table) => complete(table, section, &path, &place, problems),
                     other => problems.push(Problem {
                         place,
                         path,
@@ -274,7 +269,7 @@ pub(crate) fn check(
 
 /// Checks a table against the keys of its form.
 fn complete_variant(
-    table: &mut DocumentTable,
+    table: &mut Table,
     variants: &'static Variants,
     path: &str,
     place: &Place,
@@ -288,7 +283,7 @@ fn complete_variant(
 
 /// Checks x, y, z of a vector: each a quantity, all of the same dimension.
 fn check_vector(
-    entries: &[DocumentNode],
+    entries: &[Node],
     dimensions: &[UnitDimension],
     path: &str,
     place: &Place,
@@ -310,7 +305,7 @@ fn check_vector(
             report(&entry.place, path, message);
             continue;
         }
-        let DocumentValue::Text(text) = &entry.value else { continue };
+        let Value::Text(text) = &entry.value else { continue };
         let Ok(quantity) = quantity::parse(text) else { continue };
         let found = dimensions.iter().find(|dimension| quantity.is(**dimension)).copied();
         match (of, found) {
@@ -328,12 +323,12 @@ fn check_vector(
 }
 
 fn check_quantity(
-    value: &DocumentValue,
+    value: &Value,
     dimensions: &[UnitDimension],
     bounds: Bounds,
 ) -> Result<(), String> {
     let expected = quantity_words(dimensions);
-    let DocumentValue::Text(text) = value else {
+    let Value::Text(text) = value else {
         return Err(format!("found {}, expected {expected}", value.describe()));
     };
     let quantity = quantity::parse(text)
@@ -358,22 +353,22 @@ fn quantity_words(dimensions: &[UnitDimension]) -> String {
     dimensions.iter().map(each).collect::<Vec<_>>().join(" or ")
 }
 
-fn is_names(node: &DocumentNode) -> bool {
-    let DocumentValue::Array(entries) = &node.value else { return false };
-    entries.iter().all(|entry| matches!(entry.value, DocumentValue::Text(_)))
+fn is_names(node: &Node) -> bool {
+    let Value::Array(entries) = &node.value else { return false };
+    entries.iter().all(|entry| matches!(entry.value, Value::Text(_)))
 }
 
 /// True if a TOML value of this type is meant for this kind.
-fn takes(kind: &Kind, value: &DocumentValue) -> bool {
+fn takes(kind: &Kind, value: &Value) -> bool {
     matches!(
         (kind, value),
-        (Kind::Choice(_) | Kind::Text, DocumentValue::Text(_))
-            | (Kind::Boolean, DocumentValue::Boolean(_))
-            | (Kind::Integer(..) | Kind::Number(_), DocumentValue::Integer(_))
-            | (Kind::Number(_), DocumentValue::Number(_))
-            | (Kind::Table(_), DocumentValue::Table(_))
-            | (Kind::Tables(..), DocumentValue::Array(_))
-            | (Kind::Variants(_), DocumentValue::Table(_))
+        (Kind::Choice(_) | Kind::Text, Value::Text(_))
+            | (Kind::Boolean, Value::Boolean(_))
+            | (Kind::Integer(..) | Kind::Number(_), Value::Integer(_))
+            | (Kind::Number(_), Value::Number(_))
+            | (Kind::Table(_), Value::Table(_))
+            | (Kind::Tables(..), Value::Array(_))
+            | (Kind::Variants(_), Value::Table(_))
     )
 }
 

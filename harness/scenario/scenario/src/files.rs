@@ -1,23 +1,30 @@
 //! Files that a scenario names: listed, and read from other places than those that it names.
 
-use super::document::{DocumentTable, DocumentValue};
+use super::keys::key;
 use super::model::{DescriptionChoice, FileName, Scenario};
+use octant_toml_tree::{Table, Value};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+const SOURCE: &str = key!(source.uri);
+const ENDPOINT: &str = key!(endpoint.uri);
+const DIALECT: &str = key!(turntable.drive.dialect);
+const OF_PORT: &str = key!(source.live.description);
+const OF_LOG: &str = key!(source.log.description);
+
 /// Keys whose text is the name of a file, or a URI with one.
 const KEYS: [&str; 11] = [
-    "source.uri",
-    "endpoint.uri",
-    "source.text.gyro.file",
-    "source.text.accelerometer.file",
-    "source.reference.file",
-    "source.live.database",
-    "source.live.mapping",
-    "source.live.description",
-    "source.log.description",
-    "turntable.drive.dialect",
-    "procedure.initial_parameters.table",
+    SOURCE,
+    ENDPOINT,
+    key!(source.text.gyro.file),
+    key!(source.text.accelerometer.file),
+    key!(source.reference.file),
+    key!(source.live.database),
+    key!(source.live.mapping),
+    OF_PORT,
+    OF_LOG,
+    DIALECT,
+    key!(procedure.initial_parameters.table),
 ];
 
 /// Places of files by their names as a scenario writes them: the scenario stays the same text when its
@@ -66,29 +73,27 @@ impl Scenario {
 }
 
 /// Puts the places of files into a document.
-pub(crate) fn put_places(document: &mut DocumentTable, places: &FilePlaces) {
+pub(crate) fn put_places(document: &mut Table, places: &FilePlaces) {
     replace(document, |name| places.of(name).map(|place| place.display().to_string()));
 }
 
 /// Replaces the names of files in a document by what `place` returns for them.
-pub(crate) fn replace(document: &mut DocumentTable, mut place: impl FnMut(&str) -> Option<String>) {
+pub(crate) fn replace(document: &mut Table, mut place: impl FnMut(&str) -> Option<String>) {
     for key in KEYS {
         let Some(found) = document.at(key).cloned() else { continue };
-        let DocumentValue::Text(written) = &found.value else { continue };
+        let Value::Text(written) = &found.value else { continue };
         let (scheme, file) = match (key, written.split_once(':')) {
-            ("turntable.drive.dialect", _) if written == octant_turntable::Dialect::BUILT_IN => {
+            (DIALECT, _) if written == octant_turntable::Dialect::BUILT_IN => {
                 continue;
             }
-            ("source.live.description" | "source.log.description", _)
-                if !DescriptionChoice::is_file(written) =>
-            {
+            (OF_PORT | OF_LOG, _) if !DescriptionChoice::is_file(written) => {
                 continue;
             }
-            ("source.uri" | "endpoint.uri", None) => continue,
+            (SOURCE | ENDPOINT, None) => continue,
             // A port, which is no file.
-            ("source.uri", Some(_)) if octant_link::Uri::is_one(written) => continue,
-            ("endpoint.uri", Some((scheme, _))) if scheme != "fmu" => continue,
-            ("source.uri" | "endpoint.uri", Some((scheme, file))) => (Some(scheme), file),
+            (SOURCE, Some(_)) if octant_link::Uri::is_one(written) => continue,
+            (ENDPOINT, Some((scheme, _))) if scheme != "fmu" => continue,
+            (SOURCE | ENDPOINT, Some((scheme, file))) => (Some(scheme), file),
             _ => (None, written.as_str()),
         };
         if file.is_empty() {
@@ -97,7 +102,7 @@ pub(crate) fn replace(document: &mut DocumentTable, mut place: impl FnMut(&str) 
         if let Some(place) = place(file) {
             let text = scheme.map_or_else(|| place.clone(), |scheme| format!("{scheme}:{place}"));
             let mut node = found.clone();
-            node.value = DocumentValue::Text(text);
+            node.value = Value::Text(text);
             document.set_at(key, node);
         }
     }
@@ -120,15 +125,15 @@ duration = \"1 min\"
 
     #[test]
     fn files_are_listed_as_written_and_found_in_other_places() {
-        let mut document = crate::document::parse(TEXT).unwrap();
+        let mut document = octant_toml_tree::parse(TEXT).unwrap();
         let mut names = Vec::new();
         replace(&mut document, |name| {
             names.push(name.to_owned());
             None
         });
         assert_eq!(names, ["../ship.fmu", "core.fmu"]);
-        let text = |document: &DocumentTable, key: &str| match &document.at(key).unwrap().value {
-            DocumentValue::Text(text) => text.clone(),
+        let text = |document: &Table, key: &str| match &document.at(key).unwrap().value {
+            Value::Text(text) => text.clone(),
             other => panic!("{other:?}"),
         };
         assert_eq!(text(&document, "source.uri"), "fmu:../ship.fmu");
@@ -142,12 +147,12 @@ duration = \"1 min\"
     fn devices_and_built_in_names_are_no_files() {
         for uri in ["serial:/dev/ttyUSB0", "udp:127.0.0.1:9000", "plant"] {
             let text = format!("[source]\nuri = \"{uri}\"\n[endpoint]\nuri = \"exec:./core\"\n");
-            let mut document = crate::document::parse(&text).unwrap();
+            let mut document = octant_toml_tree::parse(&text).unwrap();
             replace(&mut document, |name| panic!("{name}"));
         }
         let text = "[source]\n[source.log]\ndescription = \"kvh-1775-rate\"\n[source.live]\ndescription = \"own.toml\"\n";
         let mut names = Vec::new();
-        replace(&mut crate::document::parse(text).unwrap(), |name| {
+        replace(&mut octant_toml_tree::parse(text).unwrap(), |name| {
             names.push(name.to_owned());
             None
         });

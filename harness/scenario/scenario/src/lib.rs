@@ -29,8 +29,6 @@ mod tour;
 pub mod trajectory;
 mod write;
 
-use octant_toml_tree as document;
-
 pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
 pub use files::FilePlaces;

@@ -5,7 +5,7 @@ use super::complete::complete;
 use super::error::{Place, ScenarioError};
 use super::files::{FilePlaces, put_places};
 use super::model::Scenario;
-use super::{derive, document, keys, other_format, read};
+use super::{derive, keys, other_format, read};
 use std::path::Path;
 
 impl Scenario {
@@ -87,7 +87,7 @@ fn parse(
 ) -> Result<Scenario, ScenarioError> {
     other_format::refuse(text, file, "a scenario")?;
     let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
-    let mut document = document::parse(text).map_err(with_file)?;
+    let mut document = octant_toml_tree::parse(text).map_err(with_file)?;
     let mut problems = Vec::new();
     let [overrides, fires] = arguments;
     for argument in overrides {

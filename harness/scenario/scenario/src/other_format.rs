@@ -1,9 +1,9 @@
 //! Files of another format than the one that a command reads: a scenario given as a campaign, and the
 //! like.
 
-use super::document::{self, DocumentTable};
 use super::error::{Place, Problem, ScenarioError};
 use super::keys::{CampaignKeys, Keys, SCENARIO, Section, SuiteKeys};
+use octant_toml_tree::Table;
 
 /// Formats that a user can confuse: name, keys of the root, and the command that takes such a file.
 fn formats() -> [(&'static str, &'static Section, &'static str); 3] {
@@ -25,7 +25,7 @@ fn formats() -> [(&'static str, &'static Section, &'static str); 3] {
 /// One problem that names both formats and the command to use.
 pub(crate) fn refuse(text: &str, file: &str, expected: &str) -> Result<(), ScenarioError> {
     // A text that isn't TOML is reported by the reader of the format.
-    let Ok(document) = document::parse(text) else { return Ok(()) };
+    let Ok(document) = octant_toml_tree::parse(text) else { return Ok(()) };
     let Some((found, command)) = other(&document, expected) else { return Ok(()) };
     let command = command.replace("FILE", file);
     let problem = Problem {
@@ -37,7 +37,7 @@ pub(crate) fn refuse(text: &str, file: &str, expected: &str) -> Result<(), Scena
 }
 
 /// Name and command of the other format that a document has.
-fn other(document: &DocumentTable, expected: &str) -> Option<(&'static str, &'static str)> {
+fn other(document: &Table, expected: &str) -> Option<(&'static str, &'static str)> {
     let keys = || document.entries.iter().map(|entry| entry.key.as_str());
     let fits = |section: &Section| keys().all(|key| section.key(key).is_some());
     let mut fitting = formats().into_iter().filter(|(_, section, _)| fits(section));

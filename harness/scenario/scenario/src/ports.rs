@@ -4,12 +4,12 @@
 //! `{ constant = "90 deg" }`; a channel of several elements takes an array of them, or the name of
 //! an array variable.
 
-use super::document::{DocumentNode, DocumentTable, DocumentValue, join, number, parse_argument};
 use super::error::{Place, Problem};
 use super::model::{ChannelElement, Code, EntryPlace, Made, Set, Setting};
 use super::quantity::{self, explain};
 use crate::channel::{Channel, Class};
 use octant_base::names::suggestion;
+use octant_toml_tree::{Node, Table, Value, join, number, parse_argument};
 
 /// Description of the values of a port.
 pub(super) fn expected_port(channel: &Channel) -> String {
@@ -32,15 +32,13 @@ pub(super) fn example_port(channel: &Channel) -> String {
 
 /// Reads the ports of a channel: one for all elements, or one for each.
 pub(super) fn ports(
-    node: &DocumentNode,
+    node: &Node,
     channel: &Channel,
     path: &str,
 ) -> Result<Vec<ChannelElement>, Problem> {
-    let at = |node: &DocumentNode, path: &str| EntryPlace {
-        place: node.place.clone(),
-        path: path.to_owned(),
-    };
-    let DocumentValue::Array(entries) = &node.value else {
+    let at =
+        |node: &Node, path: &str| EntryPlace { place: node.place.clone(), path: path.to_owned() };
+    let Value::Array(entries) = &node.value else {
         return Ok(vec![port(node, channel, at(node, path))?]);
     };
     if entries.len() != channel.elements {
@@ -50,18 +48,18 @@ pub(super) fn ports(
             expected_port(channel)
         )));
     }
-    let each = |(index, entry): (usize, &DocumentNode)| {
+    let each = |(index, entry): (usize, &Node)| {
         port(entry, channel, at(entry, &format!("{path}[{index}]")))
     };
     entries.iter().enumerate().map(each).collect()
 }
 
-fn port(node: &DocumentNode, channel: &Channel, at: EntryPlace) -> Result<ChannelElement, Problem> {
+fn port(node: &Node, channel: &Channel, at: EntryPlace) -> Result<ChannelElement, Problem> {
     let what = match &node.value {
-        DocumentValue::Text(name) if !name.trim().is_empty() => {
+        Value::Text(name) if !name.trim().is_empty() => {
             Made::Variable { name: name.clone(), unit: None, scale: 1.0 }
         }
-        DocumentValue::Table(table) => made(table, channel, &at)?,
+        Value::Table(table) => made(table, channel, &at)?,
         other => {
             return Err(at.problem(format!(
                 "found {}, expected {}",
@@ -73,7 +71,7 @@ fn port(node: &DocumentNode, channel: &Channel, at: EntryPlace) -> Result<Channe
     Ok(ChannelElement { what, at })
 }
 
-fn made(table: &DocumentTable, channel: &Channel, at: &EntryPlace) -> Result<Made, Problem> {
+fn made(table: &Table, channel: &Channel, at: &EntryPlace) -> Result<Made, Problem> {
     let known = ["variable", "unit", "scale", "constant"];
     for entry in &table.entries {
         if !known.contains(&entry.key.as_str()) {
@@ -83,19 +81,19 @@ fn made(table: &DocumentTable, channel: &Channel, at: &EntryPlace) -> Result<Mad
             return Err(at.problem(format!("unknown key, {known}")));
         }
     }
-    let wrong = |key: &str, node: &DocumentNode, expected: &str| {
+    let wrong = |key: &str, node: &Node, expected: &str| {
         let at = EntryPlace { place: node.place.clone(), path: join(&at.path, key) };
         at.problem(format!("found {}, expected {expected}", node.value.describe()))
     };
     match (table.get("variable"), table.get("constant")) {
         (Some(node), None) => {
-            let DocumentValue::Text(name) = &node.value else {
+            let Value::Text(name) = &node.value else {
                 return Err(wrong("variable", node, "the name of a variable"));
             };
             let unit = match table.get("unit") {
                 None => None,
                 Some(node) => match (&node.value, channel.class) {
-                    (DocumentValue::Text(unit), Class::Quantity(dimension)) => {
+                    (Value::Text(unit), Class::Quantity(dimension)) => {
                         constant(&format!("1 {unit}"), dimension)
                             .map_err(|expected| wrong("unit", node, &expected))?;
                         Some(unit.clone())
@@ -107,7 +105,7 @@ fn made(table: &DocumentTable, channel: &Channel, at: &EntryPlace) -> Result<Mad
                             &format!("a unit such as {:?}", dimension.unit),
                         ));
                     }
-                    (DocumentValue::Text(unit), Class::Nanoseconds) => {
+                    (Value::Text(unit), Class::Nanoseconds) => {
                         constant(&format!("1 {unit}"), quantity::UnitDimension::TIME)
                             .map_err(|expected| wrong("unit", node, &expected))?;
                         Some(unit.clone())
@@ -130,18 +128,15 @@ fn made(table: &DocumentTable, channel: &Channel, at: &EntryPlace) -> Result<Mad
                 );
             }
             let value = match (&node.value, channel.class) {
-                (DocumentValue::Text(text), Class::Quantity(dimension)) => {
-                    constant(text, dimension)
-                        .map_err(|expected| wrong("constant", node, &expected))?
-                }
-                (DocumentValue::Boolean(value), Class::Flag) => f64::from(u8::from(*value)),
-                (DocumentValue::Integer(_) | DocumentValue::Number(_), Class::Number) => {
+                (Value::Text(text), Class::Quantity(dimension)) => constant(text, dimension)
+                    .map_err(|expected| wrong("constant", node, &expected))?,
+                (Value::Boolean(value), Class::Flag) => f64::from(u8::from(*value)),
+                (Value::Integer(_) | Value::Number(_), Class::Number) => {
                     number(&node.value).unwrap_or_default()
                 }
-                (
-                    DocumentValue::Integer(value),
-                    Class::Whole | Class::Code | Class::Nanoseconds,
-                ) => *value as f64,
+                (Value::Integer(value), Class::Whole | Class::Code | Class::Nanoseconds) => {
+                    *value as f64
+                }
                 (_, Class::Quantity(dimension)) => {
                     let expected = format!("{} such as {:?}", dimension.name, dimension.example);
                     return Err(wrong("constant", node, &expected));
@@ -166,27 +161,22 @@ fn constant(text: &str, dimension: quantity::UnitDimension) -> Result<f64, Strin
 }
 
 /// Reads the settings of an FMU. Nested tables are parts of a name.
-pub(super) fn settings(table: &DocumentTable, path: &str) -> Result<Vec<Setting>, Problem> {
+pub(super) fn settings(table: &Table, path: &str) -> Result<Vec<Setting>, Problem> {
     let mut all = Vec::new();
     collect(table, "", path, &mut all)?;
     Ok(all)
 }
 
-fn collect(
-    table: &DocumentTable,
-    prefix: &str,
-    path: &str,
-    all: &mut Vec<Setting>,
-) -> Result<(), Problem> {
+fn collect(table: &Table, prefix: &str, path: &str, all: &mut Vec<Setting>) -> Result<(), Problem> {
     for entry in &table.entries {
         let name = join(prefix, &entry.key);
         let at = EntryPlace { place: entry.node.place.clone(), path: join(path, &entry.key) };
         match &entry.node.value {
-            DocumentValue::Table(inner) => {
+            Value::Table(inner) => {
                 collect(inner, &name, &at.path, all)?;
                 continue;
             }
-            DocumentValue::Array(entries) => {
+            Value::Array(entries) => {
                 let values = entries.iter().map(|entry| set(&entry.value, &at));
                 all.push(Setting { name, values: values.collect::<Result<_, _>>()?, at });
             }
@@ -199,12 +189,12 @@ fn collect(
     Ok(())
 }
 
-fn set(value: &DocumentValue, at: &EntryPlace) -> Result<Set, Problem> {
+fn set(value: &Value, at: &EntryPlace) -> Result<Set, Problem> {
     match value {
-        DocumentValue::Integer(number) => Ok(Set::Number(*number as f64)),
-        DocumentValue::Number(number) if number.is_finite() => Ok(Set::Number(*number)),
-        DocumentValue::Boolean(flag) => Ok(Set::Flag(*flag)),
-        DocumentValue::Text(text) => Ok(Set::Text(text.clone())),
+        Value::Integer(number) => Ok(Set::Number(*number as f64)),
+        Value::Number(number) if number.is_finite() => Ok(Set::Number(*number)),
+        Value::Boolean(flag) => Ok(Set::Flag(*flag)),
+        Value::Text(text) => Ok(Set::Text(text.clone())),
         other => Err(at.problem(format!(
             "found {}, expected a finite number, true or false, a text, or an array of them",
             other.describe()
@@ -222,7 +212,7 @@ pub fn setting_argument(argument: &str) -> Result<Setting, Problem> {
         let message = "expected NAME=VALUE, such as ship.mass=3.2e6".to_owned();
         return Err(Problem { place, path: String::new(), message });
     };
-    let mut table = DocumentTable::default();
+    let mut table = Table::default();
     table.set(name.trim(), parse_argument(value, argument));
     let mut all = settings(&table, "")?;
     match (all.pop(), all.is_empty()) {
@@ -235,14 +225,14 @@ pub fn setting_argument(argument: &str) -> Result<Setting, Problem> {
 }
 
 /// Reads the values that stand for a mode; `None` if one is invalid.
-pub(super) fn codes(value: &DocumentValue) -> Option<Vec<Code>> {
-    let one = |value: &DocumentValue| match value {
-        DocumentValue::Integer(number) => Some(Code::Number(*number)),
-        DocumentValue::Text(name) => Some(Code::Name(name.clone())),
+pub(super) fn codes(value: &Value) -> Option<Vec<Code>> {
+    let one = |value: &Value| match value {
+        Value::Integer(number) => Some(Code::Number(*number)),
+        Value::Text(name) => Some(Code::Name(name.clone())),
         _ => None,
     };
     match value {
-        DocumentValue::Array(entries) => entries.iter().map(|entry| one(&entry.value)).collect(),
+        Value::Array(entries) => entries.iter().map(|entry| one(&entry.value)).collect(),
         value => one(value).map(|code| vec![code]),
     }
 }
@@ -251,10 +241,9 @@ pub(super) fn codes(value: &DocumentValue) -> Option<Vec<Code>> {
 mod tests {
     use super::*;
     use crate::channel::{answer, sample};
-    use crate::document;
 
-    fn node(text: &str) -> DocumentNode {
-        let mut table = document::parse(&format!("x = {text}")).unwrap();
+    fn node(text: &str) -> Node {
+        let mut table = octant_toml_tree::parse(&format!("x = {text}")).unwrap();
         table.entries.remove(0).node
     }
 
@@ -304,14 +293,14 @@ mod tests {
     #[test]
     fn settings_may_be_nested_and_are_flat_in_the_end() {
         let text = "\"ship.mass\" = 3.2e6\nship.name = \"a\"\nship.on = true\nx = [1, 2]\n";
-        let all = settings(&document::parse(text).unwrap(), "parameters").unwrap();
+        let all = settings(&octant_toml_tree::parse(text).unwrap(), "parameters").unwrap();
         let found: Vec<_> = all.iter().map(|s| (s.name.as_str(), s.values.as_slice())).collect();
         assert_eq!(found.len(), 4);
         assert!(found.contains(&("ship.mass", &[Set::Number(3.2e6)])));
         assert!(found.contains(&("ship.name", &[Set::Text("a".to_owned())])));
         assert!(found.contains(&("ship.on", &[Set::Flag(true)])));
         assert!(found.contains(&("x", &[Set::Number(1.0), Set::Number(2.0)])));
-        let error = settings(&document::parse("x = [[1]]").unwrap(), "p").unwrap_err();
+        let error = settings(&octant_toml_tree::parse("x = [[1]]").unwrap(), "p").unwrap_err();
         assert!(error.message.contains("found an array of 1"), "{}", error.message);
     }
 

@@ -1,12 +1,12 @@
 //! JSON Schema of the scenario, made from the table of keys: for completion in editors.
 
 use super::complete::expected;
-use super::document::parse_default;
 use super::keys::{
     Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants, cases_in_words,
 };
 use super::quantity::UnitDimension;
 use crate::channel::Channel;
+use octant_toml_tree::parse_default;
 use serde_json::{Map, Value, json};
 
 /// A number followed by a unit.
@@ -52,7 +52,7 @@ fn property(key: &Key) -> Value {
     let mut description = format!("{} Takes {}.", key.doc, expected(&key.kind));
     match key.default {
         Default::Value(text) => {
-            let default = crate::document::json(&parse_default(text).value);
+            let default = octant_toml_tree::json(&parse_default(text).value);
             property["default"] = default;
         }
         Default::Derived(words) => description += &format!(" Default: {words}."),

@@ -15,7 +15,7 @@
 
 use super::error::{Problem, ScenarioError};
 use super::keys::{CaseKeys, Keys, SuiteKeys};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 /// A list of scenarios with their expected results.

@@ -3,127 +3,137 @@
 //! Keys that are omitted by default, or that contradict another one, are comments in it.
 
 use super::complete::expected;
-use super::document::{join, parse_default, write_value};
-use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section, cases_in_words};
+use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section, cases_in_words, key};
 use super::ports;
 use super::quantity::{self, UnitDimension};
 use octant_faults::{connection::kinds as connection, kinds};
+use octant_toml_tree::{join, parse_default, write_value};
 
 /// Settings of the tour beside the defaults: path and TOML value.
 const SET: &[(&str, &str)] = &[
-    ("schema", "1"),
-    ("title", "a tour of every key"),
-    ("procedure.calibration.positions", "eight"),
-    ("procedure.navigation.duration", "24 h"),
-    ("baseline.positions", "six"),
-    ("baseline.g_states", "false"),
-    ("requirements.id", "NAV-1"),
-    ("requirements.text", "The longitude error stays below 20 arcmin over 24 hours."),
-    ("requirements.measure", "navigation.longitude_error_arcmin.max"),
-    ("requirements.limit", "20 arcmin"),
-    ("requirements.clause", "example: no document behind it"),
+    (key!(schema), "1"),
+    (key!(title), "a tour of every key"),
+    (key!(procedure.calibration.positions), "eight"),
+    (key!(procedure.navigation.duration), "24 h"),
+    (key!(baseline.positions), "six"),
+    (key!(baseline.g_states), "false"),
+    (key!(requirements.id), "NAV-1"),
+    (key!(requirements.text), "The longitude error stays below 20 arcmin over 24 hours."),
+    (key!(requirements.measure), "navigation.longitude_error_arcmin.max"),
+    (key!(requirements.limit), "20 arcmin"),
+    (key!(requirements.clause), "example: no document behind it"),
 ];
 
 /// Tables that are omitted by default but present in the tour.
 const OPENED: &[&str] =
-    &["procedure.calibration", "procedure.navigation", "baseline", "requirements"];
+    &[key!(procedure.calibration), key!(procedure.navigation), key!(baseline), key!(requirements)];
 
 /// Examples for keys for which the example of the dimension isn't useful.
 const EXAMPLES: &[(&str, &str)] = &[
-    ("motion.ship.roll", r#"[{ amplitude = "3 deg", period = "8 s", phase = "0 deg" }]"#),
-    ("motion.ship.pitch", r#"[{ amplitude = "1.5 deg", period = "6 s", phase = "0 deg" }]"#),
-    ("motion.ship.yaw", r#"[{ amplitude = "1 deg", period = "10 s", phase = "0 deg" }]"#),
-    ("motion.ship.surge", r#"[{ amplitude = "0.2 m", period = "6 s", phase = "0 deg" }]"#),
-    ("motion.ship.sway", r#"[{ amplitude = "0.2 m", period = "7 s", phase = "0 deg" }]"#),
-    ("motion.ship.heave", r#"[{ amplitude = "0.2 m", period = "8 s", phase = "0 deg" }]"#),
-    ("motion.ship.spectrum.peak_period", r#""8 s""#),
-    ("turntable.drive.port", r#""tcp:192.168.1.20:8000""#),
-    ("turntable.drive.azimuth", r#"["-185 deg", "365 deg"]"#),
-    ("turntable.drive.roll", r#"["-185 deg", "365 deg"]"#),
-    ("turntable.drive.guard", r#""1 s""#),
-    ("power.port", r#""tcp:192.168.1.30""#),
-    ("power.relay", "1"),
-    ("procedure.calibration.name", r#""eight with other tilts""#),
-    ("baseline.name", r#""level and on edge""#),
-    ("imu.extensions.temperature.plateau", r#""15 K""#),
-    ("imu.extensions.vibration.frequency", r#""35 Hz""#),
+    (key!(motion.ship.roll), r#"[{ amplitude = "3 deg", period = "8 s", phase = "0 deg" }]"#),
+    (key!(motion.ship.pitch), r#"[{ amplitude = "1.5 deg", period = "6 s", phase = "0 deg" }]"#),
+    (key!(motion.ship.yaw), r#"[{ amplitude = "1 deg", period = "10 s", phase = "0 deg" }]"#),
+    (key!(motion.ship.surge), r#"[{ amplitude = "0.2 m", period = "6 s", phase = "0 deg" }]"#),
+    (key!(motion.ship.sway), r#"[{ amplitude = "0.2 m", period = "7 s", phase = "0 deg" }]"#),
+    (key!(motion.ship.heave), r#"[{ amplitude = "0.2 m", period = "8 s", phase = "0 deg" }]"#),
+    (key!(motion.ship.spectrum.peak_period), r#""8 s""#),
+    (key!(turntable.drive.port), r#""tcp:192.168.1.20:8000""#),
+    (key!(turntable.drive.azimuth), r#"["-185 deg", "365 deg"]"#),
+    (key!(turntable.drive.roll), r#"["-185 deg", "365 deg"]"#),
+    (key!(turntable.drive.guard), r#""1 s""#),
+    (key!(power.port), r#""tcp:192.168.1.30""#),
+    (key!(power.relay), "1"),
+    (key!(procedure.calibration.name), r#""eight with other tilts""#),
+    (key!(baseline.name), r#""level and on edge""#),
+    (key!(imu.extensions.temperature.plateau), r#""15 K""#),
+    (key!(imu.extensions.vibration.frequency), r#""35 Hz""#),
     (
-        "procedure.calibration.stops",
+        key!(procedure.calibration.stops),
         r#"[{ azimuth = "0 deg", roll = "0 deg", weight = 1.0 }, { azimuth = "0 deg", roll = "45 deg", weight = 2.0 }]"#,
     ),
     (
-        "baseline.stops",
+        key!(baseline.stops),
         r#"[{ azimuth = "0 deg", roll = "0 deg", weight = 1.0 }, { azimuth = "0 deg", roll = "90 deg", weight = 1.0 }]"#,
     ),
-    ("faults.id", r#""spike-1""#),
-    ("faults.channels", r#""gyro x""#),
-    ("faults.amplitude", r#""1000 deg/h""#),
-    ("faults.trigger", r#"{ at = "5050 s" }"#),
-    ("faults.duration", r#""100 samples""#),
-    ("faults.repeat", r#"{ times = 3, every = "10 s" }"#),
-    ("source.text.gyro.file", r#""gyroscope.txt""#),
-    ("source.text.gyro.y", "3"),
-    ("source.text.gyro.z", "4"),
-    ("source.text.accelerometer.file", r#""accelerometer.txt""#),
-    ("source.text.accelerometer.x", "5"),
-    ("source.text.accelerometer.y", "6"),
-    ("source.text.accelerometer.z", "7"),
-    ("source.text.temperature_column", "10"),
-    ("source.text.gimbal.azimuth", "8"),
-    ("source.text.gimbal.roll", "9"),
-    ("source.live.protocol", r#""vectornav""#),
-    ("source.live.gyro_count", r#""0.000390625 arcsec""#),
-    ("source.live.accel_count", r#""1.5e-6 m/s""#),
-    ("source.live.stamps_within", r#""50 us""#),
-    ("source.live.host_clock", r#""/dev/ptp0""#),
-    ("source.live.host_within", r#""1 us""#),
-    ("source.live.tai_offset", "37"),
-    ("source.live.pps", r#""/dev/pps0""#),
-    ("source.log.protocol", r#""vectornav""#),
-    ("source.log.description", r#""unit.toml""#),
-    ("source.live.description", r#""unit.toml""#),
-    ("source.log.gyro_count", r#""0.000390625 arcsec""#),
-    ("source.log.accel_count", r#""1.5e-6 m/s""#),
-    ("source.live.database", r#""unit.dbc""#),
-    ("source.live.mapping", r#""unit.toml""#),
-    ("source.mcap.topic", r#""/imu""#),
-    ("source.mcap.time_field", r#""header.stamp.sec""#),
-    ("source.mcap.nanoseconds_field", r#""header.stamp.nanosec""#),
-    ("source.mcap.temperature_field", r#""temperature""#),
-    ("source.mcap.gyro.x", r#""angular_velocity.x""#),
-    ("source.mcap.gyro.y", r#""angular_velocity.y""#),
-    ("source.mcap.gyro.z", r#""angular_velocity.z""#),
-    ("source.mcap.accelerometer.x", r#""linear_acceleration.x""#),
-    ("source.mcap.accelerometer.y", r#""linear_acceleration.y""#),
-    ("source.mcap.accelerometer.z", r#""linear_acceleration.z""#),
-    ("source.fmu.time_limit", r#""10 s""#),
-    ("source.fmu.step", r#""5 ms""#),
-    ("source.fmu.tolerance", "1e-6"),
-    ("source.fmu.map.gyro.rate", r#"["imu.wx", "imu.wy", "-imu.wz"]"#),
-    ("source.fmu.map.gyro.delta_theta", r#""imu.delta_theta""#),
+    (key!(source.text.gyro.file), r#""gyroscope.txt""#),
+    (key!(source.text.gyro.y), "3"),
+    (key!(source.text.gyro.z), "4"),
+    (key!(source.text.accelerometer.file), r#""accelerometer.txt""#),
+    (key!(source.text.accelerometer.x), "5"),
+    (key!(source.text.accelerometer.y), "6"),
+    (key!(source.text.accelerometer.z), "7"),
+    (key!(source.text.temperature_column), "10"),
+    (key!(source.text.gimbal.azimuth), "8"),
+    (key!(source.text.gimbal.roll), "9"),
+    (key!(source.live.protocol), r#""vectornav""#),
+    (key!(source.live.gyro_count), r#""0.000390625 arcsec""#),
+    (key!(source.live.accel_count), r#""1.5e-6 m/s""#),
+    (key!(source.live.stamps_within), r#""50 us""#),
+    (key!(source.live.host_clock), r#""/dev/ptp0""#),
+    (key!(source.live.host_within), r#""1 us""#),
+    (key!(source.live.tai_offset), "37"),
+    (key!(source.live.pps), r#""/dev/pps0""#),
+    (key!(source.log.protocol), r#""vectornav""#),
+    (key!(source.log.description), r#""unit.toml""#),
+    (key!(source.live.description), r#""unit.toml""#),
+    (key!(source.log.gyro_count), r#""0.000390625 arcsec""#),
+    (key!(source.log.accel_count), r#""1.5e-6 m/s""#),
+    (key!(source.live.database), r#""unit.dbc""#),
+    (key!(source.live.mapping), r#""unit.toml""#),
+    (key!(source.mcap.topic), r#""/imu""#),
+    (key!(source.mcap.time_field), r#""header.stamp.sec""#),
+    (key!(source.mcap.nanoseconds_field), r#""header.stamp.nanosec""#),
+    (key!(source.mcap.temperature_field), r#""temperature""#),
+    (key!(source.mcap.gyro.x), r#""angular_velocity.x""#),
+    (key!(source.mcap.gyro.y), r#""angular_velocity.y""#),
+    (key!(source.mcap.gyro.z), r#""angular_velocity.z""#),
+    (key!(source.mcap.accelerometer.x), r#""linear_acceleration.x""#),
+    (key!(source.mcap.accelerometer.y), r#""linear_acceleration.y""#),
+    (key!(source.mcap.accelerometer.z), r#""linear_acceleration.z""#),
+    (key!(source.fmu.time_limit), r#""10 s""#),
+    (key!(source.fmu.step), r#""5 ms""#),
+    (key!(source.fmu.tolerance), "1e-6"),
+    (key!(source.fmu.map.gyro.rate), r#"["imu.wx", "imu.wy", "-imu.wz"]"#),
+    (key!(source.fmu.map.gyro.delta_theta), r#""imu.delta_theta""#),
     (
-        "source.fmu.map.accelerometer.specific_force",
+        key!(source.fmu.map.accelerometer.specific_force),
         r#"[{ variable = "imu.fx", unit = "g" }, { variable = "imu.fy", unit = "g" }, { variable = "imu.fz", unit = "g" }]"#,
     ),
-    ("source.fmu.map.gimbal.roll", r#"{ constant = "0 deg" }"#),
-    ("endpoint.link.hello", r#""10 s""#),
-    ("endpoint.fmu.time_limit", r#""10 s""#),
-    ("endpoint.fmu.tolerance", "1e-6"),
-    ("endpoint.fmu.parameters", r#"{ "filter.gain" = 0.5 }"#),
-    ("endpoint.fmu.modes.calibrating", r#"[1, "turning"]"#),
+    (key!(source.fmu.map.gimbal.roll), r#"{ constant = "0 deg" }"#),
+    (key!(endpoint.link.hello), r#""10 s""#),
+    (key!(endpoint.fmu.time_limit), r#""10 s""#),
+    (key!(endpoint.fmu.tolerance), "1e-6"),
+    (key!(endpoint.fmu.parameters), r#"{ "filter.gain" = 0.5 }"#),
+    (key!(endpoint.fmu.modes.calibrating), r#"[1, "turning"]"#),
 ];
 
 /// Kind of fault in the tour.
 const SHOWN_FAULT: &str = "spike";
 
+/// Examples for keys of the fault in the tour.
+const FAULT_EXAMPLES: &[(&str, &str)] = &[
+    ("id", r#""spike-1""#),
+    ("channels", r#""gyro x""#),
+    ("amplitude", r#""1000 deg/h""#),
+    ("trigger", r#"{ at = "5050 s" }"#),
+    ("duration", r#""100 samples""#),
+    ("repeat", r#"{ times = 3, every = "10 s" }"#),
+];
+
 /// Example for the key at a path, as TOML.
 fn example_at(path: &str, kind: &Kind) -> String {
-    let own = EXAMPLES.iter().find(|(name, _)| *name == path);
+    let own = match path.split_once('.') {
+        Some((table, key)) if table == key!(faults) => {
+            FAULT_EXAMPLES.iter().find(|(name, _)| *name == key)
+        }
+        _ => EXAMPLES.iter().find(|(name, _)| *name == path),
+    };
     own.map_or_else(|| example(kind), |(_, text)| (*text).to_owned())
 }
 
 /// Keys with a default that have no effect beside the tour's settings.
-const CLOSED: &[&str] = &["procedure.alignment.duration", "procedure.calibration.least_squares"];
+const CLOSED: &[&str] =
+    &[key!(procedure.alignment.duration), key!(procedure.calibration.least_squares)];
 
 /// Makes the tour as TOML. It can be run: 4 hours of calibration, 24 hours of navigation, two methods.
 #[must_use]
@@ -420,7 +430,6 @@ pub fn fault_example(kind: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::super::complete::complete;
-    use super::super::document;
     use super::super::error::Place;
     use super::*;
 
@@ -527,7 +536,7 @@ mod tests {
             (own, "procedure.calibration.prior.position", "elsewhere"),
         ] {
             let text = format!("schema = 1\n{set}[procedure.calibration.least_squares]\n");
-            let mut document = document::parse(&text).unwrap();
+            let mut document = octant_toml_tree::parse(&text).unwrap();
             super::super::derive::derive(&mut document);
             let mut section = SCENARIO;
             let (parent, name) = path.rsplit_once('.').unwrap();
@@ -547,6 +556,30 @@ mod tests {
         }
     }
 
+    /// Keys of faults and forms depend on the content of a table, so that the compiler can't look for these.
+    #[test]
+    fn every_example_of_a_form_is_of_a_key() {
+        let fault = section_of(SHOWN_FAULT).unwrap();
+        for (name, _) in FAULT_EXAMPLES {
+            assert!(fault.key(name).is_some(), "{SHOWN_FAULT} has no {name}");
+        }
+        let forms = ["trigger", "repeat"].map(|name| {
+            let kinds = match &fault.key(name).unwrap().kind {
+                Kind::Either(kinds) => kinds,
+                kind => std::slice::from_ref(kind),
+            };
+            let of_kind = |kind: &Kind| match kind {
+                Kind::Variants(variants) => Some((variants.forms)()),
+                _ => None,
+            };
+            kinds.iter().find_map(of_kind).unwrap()
+        });
+        for (name, _) in FORM_EXAMPLES {
+            let mut sections = forms.iter().flat_map(|forms| forms.iter());
+            assert!(sections.any(|(_, section)| section.key(name).is_some()), "no form has {name}");
+        }
+    }
+
     #[test]
     fn every_example_and_every_default_passes_the_check() {
         let mut all = Vec::new();
@@ -558,13 +591,14 @@ mod tests {
                 Default::Value(text) => format!("x = {}", written(text)),
                 _ => format!("x = {}", example_at(&path, &key.kind)),
             };
-            let mut table = document::parse(&text).unwrap_or_else(|e| panic!("{path}: {e:?}"));
+            let mut table =
+                octant_toml_tree::parse(&text).unwrap_or_else(|e| panic!("{path}: {e:?}"));
             let mut problems = Vec::new();
             let node = table.get_mut("x").unwrap();
             super::super::complete::check(node, key, &key.kind, &path, &mut problems);
             assert!(problems.is_empty(), "{path}: {text}: {problems:?}");
         }
-        let mut table = document::parse("").unwrap();
+        let mut table = octant_toml_tree::parse("").unwrap();
         let mut problems = Vec::new();
         complete(&mut table, SCENARIO, "", &Place::Default, &mut problems);
         assert_eq!(problems.len(), 1, "the schema alone has to be given: {problems:?}");

@@ -2,14 +2,14 @@
 
 use super::arguments::override_set;
 use super::derive::without_effect;
-use super::document::{DocumentNode, DocumentTable, DocumentValue, KeyEntry, write_value};
 use super::error::{Place, Problem};
-use super::keys::{Kind, SCENARIO, Section};
+use super::keys::{Kind, SCENARIO, Section, key, keys_of};
 use super::model::{AlignmentSpec, MOTIONS, MotionSpec, Scenario};
 use super::quantity::UnitDimension;
 use super::resolve::DrawnValues;
 use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
+use octant_toml_tree::{Entry, Node, Table, Value, join, write_value};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -20,19 +20,19 @@ impl Scenario {
     pub fn to_resolved_toml(&self, seed: u64, draws: &DrawnValues) -> String {
         let mut document = self.document.clone();
         for (path, _) in without_effect(&document) {
-            document.remove_at(&path);
+            document.remove_at(path);
         }
-        document.set("seed", node(DocumentValue::Integer(i64::try_from(seed).unwrap_or(i64::MAX))));
+        document.set(key!(seed), node(Value::Integer(i64::try_from(seed).unwrap_or(i64::MAX))));
         let parameters = draws.parameters.to_array();
         for group in ParameterGroup::ALL {
             let values = quantities(dimension_of(group), &parameters[group.range()]);
             let constant = table(vec![("constant", values)]);
-            document.set_at(&format!("imu.{}", group.name()), node(constant));
+            document.set_at(&join(key!(imu), group.name()), node(constant));
         }
         self.write_drawn(&mut document, draws);
         if let MotionSpec::Dockside(_) = &self.motion {
-            document.remove_at("motion.ship.spectrum");
-            document.set_at("motion.ship.preset", node(DocumentValue::Text("calm".to_owned())));
+            document.remove_at(key!(motion.ship.spectrum));
+            document.set_at(key!(motion.ship.preset), node(Value::Text("calm".to_owned())));
             for (index, name) in MOTIONS.into_iter().enumerate() {
                 let amplitude =
                     if index < 3 { UnitDimension::ANGLE } else { UnitDimension::LENGTH };
@@ -44,15 +44,15 @@ impl Scenario {
                     ]))
                 };
                 let components = draws.motion[index].iter().map(component);
-                let components = DocumentValue::Array(components.collect());
-                document.set_at(&format!("motion.ship.{name}"), node(components));
+                let components = Value::Array(components.collect());
+                document.set_at(&join(key!(motion.ship), name), node(components));
             }
         }
         if let AlignmentSpec::Given { .. } = self.alignment {
             let attitude = quantities(UnitDimension::SMALL_ANGLE, &draws.attitude_error_rad);
             let velocity = quantities(UnitDimension::VELOCITY, &draws.velocity_error_mps);
-            document.set_at("procedure.alignment.attitude_error", node(attitude));
-            document.set_at("procedure.alignment.velocity_error", node(velocity));
+            document.set_at(key!(procedure.alignment.attitude_error), node(attitude));
+            document.set_at(key!(procedure.alignment.velocity_error), node(velocity));
         }
         self.write_files(&mut document);
         let mut out = String::from(
@@ -73,7 +73,7 @@ impl Scenario {
             override_set(&mut document, change)?;
         }
         for (path, _) in without_effect(&document) {
-            document.remove_at(&path);
+            document.remove_at(path);
         }
         self.write_files(&mut document);
         let mut out: String = about.iter().map(|line| format!("# {line}\n")).collect();
@@ -82,7 +82,7 @@ impl Scenario {
     }
 
     /// Writes the errors beside the parameters that were drawn as given ones.
-    fn write_drawn(&self, document: &mut DocumentTable, draws: &DrawnValues) {
+    fn write_drawn(&self, document: &mut Table, draws: &DrawnValues) {
         let errors = self.true_further(draws);
         for (group, _) in FurtherGroup::ALL.iter().zip(&self.further).filter(|(_, of)| of.is_some())
         {
@@ -93,73 +93,74 @@ impl Scenario {
             let one = |dimension: UnitDimension, index: usize| text(dimension.write(values[index]));
             match group {
                 FurtherGroup::AccelLever => {
-                    for (axis, arm) in ["x", "y", "z"].into_iter().zip(values.chunks(3)) {
-                        let arm = quantities(UnitDimension::LENGTH, arm);
-                        set(&format!("imu.extensions.lever_arm.{axis}"), arm);
+                    let paths = keys_of!(imu.extensions.lever_arm: x, y, z);
+                    for (path, arm) in paths.into_iter().zip(values.chunks(3)) {
+                        set(path, quantities(UnitDimension::LENGTH, arm));
                     }
                 }
                 FurtherGroup::GyroAsymmetry => {
-                    set("imu.extensions.gyro_asymmetry", extension(UnitDimension::RATIO));
+                    set(key!(imu.extensions.gyro_asymmetry), extension(UnitDimension::RATIO));
                 }
                 FurtherGroup::AccelAsymmetry => {
-                    set("imu.extensions.accel_asymmetry", extension(UnitDimension::RATIO));
+                    set(key!(imu.extensions.accel_asymmetry), extension(UnitDimension::RATIO));
                 }
                 FurtherGroup::AccelQuadratic => {
                     let values = extension(UnitDimension::ACCEL_QUADRATIC);
-                    set("imu.extensions.accel_quadratic", values);
+                    set(key!(imu.extensions.accel_quadratic), values);
                 }
                 FurtherGroup::GyroBiasTemperature => {
                     let values = extension(UnitDimension::GYRO_BIAS_PER_K);
-                    set("imu.extensions.temperature.gyro_bias", values);
+                    set(key!(imu.extensions.temperature.gyro_bias), values);
                 }
                 FurtherGroup::GyroScaleTemperature => {
                     let values = extension(UnitDimension::SCALE_PER_K);
-                    set("imu.extensions.temperature.gyro_scale", values);
+                    set(key!(imu.extensions.temperature.gyro_scale), values);
                 }
                 FurtherGroup::AccelBiasTemperature => {
                     let values = extension(UnitDimension::ACCEL_BIAS_PER_K);
-                    set("imu.extensions.temperature.accel_bias", values);
+                    set(key!(imu.extensions.temperature.accel_bias), values);
                 }
                 FurtherGroup::AccelScaleTemperature => {
                     let values = extension(UnitDimension::SCALE_PER_K);
-                    set("imu.extensions.temperature.accel_scale", values);
+                    set(key!(imu.extensions.temperature.accel_scale), values);
                 }
                 FurtherGroup::Deflection => {
-                    set("site.deflection_north", one(UnitDimension::SMALL_ANGLE, 0));
-                    set("site.deflection_east", one(UnitDimension::SMALL_ANGLE, 1));
+                    set(key!(site.deflection_north), one(UnitDimension::SMALL_ANGLE, 0));
+                    set(key!(site.deflection_east), one(UnitDimension::SMALL_ANGLE, 1));
                 }
                 FurtherGroup::GravityAnomaly => {
-                    set("site.gravity_anomaly", one(UnitDimension::ACCEL_BIAS, 0));
+                    set(key!(site.gravity_anomaly), one(UnitDimension::ACCEL_BIAS, 0));
                 }
                 FurtherGroup::GimbalMounting => {
                     // The truth of z has the azimuth encoder's zero in it, which is a key of its own.
                     let mut values = values.clone();
                     values[2] += self.turntable.errors.encoder_zero_rad[0];
-                    set("turntable.mounting", quantities(UnitDimension::SMALL_ANGLE, &values));
+                    set(key!(turntable.mounting), quantities(UnitDimension::SMALL_ANGLE, &values));
                 }
                 FurtherGroup::GimbalNonOrthogonality => {
-                    set("turntable.non_orthogonality", one(UnitDimension::SMALL_ANGLE, 0));
+                    set(key!(turntable.non_orthogonality), one(UnitDimension::SMALL_ANGLE, 0));
                 }
                 FurtherGroup::EncoderEccentricity => {
                     let given = self.turntable.errors.eccentricity_rad;
                     let drawn = &draws.further[group.range()];
-                    for (axis, name) in ["azimuth", "roll"].into_iter().enumerate() {
+                    let paths = keys_of!(turntable: eccentricity_azimuth, eccentricity_roll);
+                    for (axis, path) in paths.into_iter().enumerate() {
                         // A drawn curve hides the truth: that of the coefficients is the sum.
                         let values = [0, 1].map(|i| given[axis][i] + drawn[2 * axis + i]);
                         let values = quantities(UnitDimension::SMALL_ANGLE, &values);
-                        set(&format!("turntable.eccentricity_{name}"), values);
+                        set(path, values);
                     }
                 }
                 FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov => {}
             }
         }
-        document.remove_at("imu.extensions.drawn");
-        document.remove_at("site.drawn");
-        document.remove_at("turntable.drawn");
+        document.remove_at(key!(imu.extensions.drawn));
+        document.remove_at(key!(site.drawn));
+        document.remove_at(key!(turntable.drawn));
     }
 
     /// Makes relative file names absolute, because the resolved scenario is in another folder.
-    fn write_files(&self, document: &mut DocumentTable) {
+    fn write_files(&self, document: &mut Table) {
         let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
         let absolute = |file: &str| {
             if file.starts_with("${") || Path::new(file).is_absolute() {
@@ -185,29 +186,29 @@ fn dimension_of(group: ParameterGroup) -> UnitDimension {
     }
 }
 
-fn node(value: DocumentValue) -> DocumentNode {
-    DocumentNode { value, place: Place::Default }
+fn node(value: Value) -> Node {
+    Node { value, place: Place::Default }
 }
 
-fn text(text: String) -> DocumentValue {
-    DocumentValue::Text(text)
+fn text(text: String) -> Value {
+    Value::Text(text)
 }
 
-fn quantities(dimension: UnitDimension, values: &[f64]) -> DocumentValue {
-    DocumentValue::Array(values.iter().map(|value| node(text(dimension.write(*value)))).collect())
+fn quantities(dimension: UnitDimension, values: &[f64]) -> Value {
+    Value::Array(values.iter().map(|value| node(text(dimension.write(*value)))).collect())
 }
 
-fn table(entries: Vec<(&str, DocumentValue)>) -> DocumentValue {
-    let entry = |(key, value): (&str, DocumentValue)| KeyEntry {
+fn table(entries: Vec<(&str, Value)>) -> Value {
+    let entry = |(key, value): (&str, Value)| Entry {
         key: key.to_owned(),
         place: Place::Default,
         node: node(value),
     };
-    DocumentValue::Table(DocumentTable { entries: entries.into_iter().map(entry).collect() })
+    Value::Table(Table { entries: entries.into_iter().map(entry).collect() })
 }
 
 /// Writes a table in the order of its keys: values first, then tables with their headers.
-fn write_table(table: &DocumentTable, section: &Section, path: &str, out: &mut String) {
+fn write_table(table: &Table, section: &Section, path: &str, out: &mut String) {
     let mut later = Vec::new();
     for key in section.keys {
         let Some(node) = table.get(key.name) else { continue };
@@ -216,19 +217,19 @@ fn write_table(table: &DocumentTable, section: &Section, path: &str, out: &mut S
             kind => Some(kind),
         };
         match (kind, &node.value) {
-            (Some(Kind::Table(inner)), DocumentValue::Table(table)) if !inner.one_of => {
+            (Some(Kind::Table(inner)), Value::Table(table)) if !inner.one_of => {
                 later.push((key.name, *inner, vec![table], false));
             }
-            (Some(Kind::Tables(inner, ..)), DocumentValue::Array(entries)) if path.is_empty() => {
+            (Some(Kind::Tables(inner, ..)), Value::Array(entries)) if path.is_empty() => {
                 let tables = entries.iter().filter_map(|entry| match &entry.value {
-                    DocumentValue::Table(table) => Some(table),
+                    Value::Table(table) => Some(table),
                     _ => None,
                 });
                 later.push((key.name, *inner, tables.collect(), true));
             }
-            (Some(Kind::VariantTables(variants, _)), DocumentValue::Array(entries)) => {
+            (Some(Kind::VariantTables(variants, _)), Value::Array(entries)) => {
                 for entry in entries {
-                    if let DocumentValue::Table(table) = &entry.value
+                    if let Value::Table(table) = &entry.value
                         && let Some(inner) = variants.section(table)
                     {
                         later.push((key.name, inner, vec![table], true));
@@ -243,7 +244,7 @@ fn write_table(table: &DocumentTable, section: &Section, path: &str, out: &mut S
         }
     }
     for (name, section, tables, array) in later {
-        let path = super::document::join(path, name);
+        let path = join(path, name);
         for table in tables {
             _ = if array { write!(out, "\n[[{path}]]\n") } else { write!(out, "\n[{path}]\n") };
             write_table(table, section, &path, out);

@@ -7,8 +7,8 @@ use super::result::Characterisation;
 use super::text::{estimate, title, unit};
 use maud::{Markup, html};
 use octant_base::number::{plain, significant};
-use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
-use octant_report::page::{PageSection, page, sections};
+use octant_report::chart::{Band, Chart, Line, Role};
+use octant_report::page::{Section, page, sections};
 use octant_scenario::file_names::FileNames;
 
 mod temperature;
@@ -17,12 +17,12 @@ mod temperature;
 #[must_use]
 pub fn render(result: &Characterisation, command: &str) -> String {
     let all = [
-        PageSection::new("terms", "Noise terms", terms(result)),
-        PageSection::new("allan", "Deviations", deviations(result)),
-        PageSection::new("spectrum", "Spectral density", spectra(result)),
-        PageSection::new("lines", "Spectral lines", lines(result)),
-        PageSection::new("earth", "Earth's rate", earth(result)),
-        PageSection::new(
+        Section::new("terms", "Noise terms", terms(result)),
+        Section::new("allan", "Deviations", deviations(result)),
+        Section::new("spectrum", "Spectral density", spectra(result)),
+        Section::new("lines", "Spectral lines", lines(result)),
+        Section::new("earth", "Earth's rate", earth(result)),
+        Section::new(
             "temperature",
             "Temperature",
             temperature::section(
@@ -31,9 +31,9 @@ pub fn render(result: &Characterisation, command: &str) -> String {
                 &result.names_in_file,
             ),
         ),
-        PageSection::new("twin", "Simulated twin", twin(result)),
-        PageSection::new("imu", "Instrument of a scenario", instrument(result)),
-        PageSection::new(
+        Section::new("twin", "Simulated twin", twin(result)),
+        Section::new("imu", "Instrument of a scenario", instrument(result)),
+        Section::new(
             "provenance",
             "Provenance",
             html! {
@@ -128,8 +128,8 @@ fn small(title: &str, x_label: &str, y_label: &str) -> Chart {
     chart
 }
 
-fn line(label: &str, role: ChartRole, points: Vec<[f64; 2]>) -> ChartLine {
-    ChartLine { label: label.to_owned(), role, points }
+fn line(label: &str, role: Role, points: Vec<[f64; 2]>) -> Line {
+    Line { label: label.to_owned(), role, points }
 }
 
 fn deviations(result: &Characterisation) -> Markup {
@@ -163,7 +163,7 @@ fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisa
     };
     chart.bands.push(Band {
         label: "interval of 95 %".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: rows()
             .map(|row| [libm::log10(row.tau_s), row.allan.interval[0], row.allan.interval[1]])
             .collect(),
@@ -179,17 +179,17 @@ fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisa
             .iter()
             .map(|row| [libm::log10(row.tau_s), row.allan.deviation])
             .collect();
-        chart.lines.push(line("simulated twin", ChartRole::Reference, points));
+        chart.lines.push(line("simulated twin", Role::Reference, points));
     }
     if let Some(noise) = &channel.noise {
         let (kernel, squares) = (noise.kernel(1.0 / result.rate_hz), noise.squares());
         let fitted =
             |tau_s: f64| libm::sqrt(variance_of(&kernel, &squares, DifferenceOrder::Second, tau_s));
         let points = rows().map(|row| [libm::log10(row.tau_s), fitted(row.tau_s)]).collect();
-        chart.lines.push(line("sum of the terms", ChartRole::Second, points));
+        chart.lines.push(line("sum of the terms", Role::Second, points));
     }
     let points = rows().map(|row| [libm::log10(row.tau_s), row.allan.deviation]).collect();
-    chart.lines.push(line("Allan deviation", ChartRole::Primary, points));
+    chart.lines.push(line("Allan deviation", Role::Primary, points));
     chart
 }
 
@@ -218,9 +218,9 @@ fn spectrum_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisat
         .flat_map(|twin| &twin.analysis.channels)
         .find(|twin| twin.name == channel.name);
     if let Some(twin) = of_twin {
-        chart.lines.push(line("simulated twin", ChartRole::Reference, points(twin)));
+        chart.lines.push(line("simulated twin", Role::Reference, points(twin)));
     }
-    chart.lines.push(line("spectral density", ChartRole::Primary, points(channel)));
+    chart.lines.push(line("spectral density", Role::Primary, points(channel)));
     chart
 }
 

@@ -8,7 +8,7 @@ use crate::evaluate::{Conditions, Evaluator};
 use crate::judge::{Judge, MeasureWeights};
 use crate::platform::{NAVIGATING_S, Platform};
 use crate::search::SearchProblem;
-use crate::setup::{DesignError, DesignSetup};
+use crate::setup::{DesignError, Setup};
 use octant_calibration::config::{NavigationPlan, TurntableRates};
 use octant_calibration::covariance::Covariance;
 use octant_calibration::schedule::move_between_s;
@@ -147,7 +147,7 @@ impl SearchProblem {
         let conditions = Conditions { platform: platform.clone(), ..self.setup.conditions.clone() };
         let navigation =
             NavigationPlan { rotation, dwell_s: REST_S, ..self.setup.navigation.clone() };
-        let setup = DesignSetup { conditions, navigation, ..self.setup.clone() };
+        let setup = Setup { conditions, navigation, ..self.setup.clone() };
         let weights = MeasureWeights::new(&setup, self.measure)?;
         let stops = sequence.stops();
         Ok(Judge::new(&setup, &weights).score_of(covariance, &stops[stops.len() - 1]))

@@ -5,7 +5,7 @@ use crate::isotropic::known_but_isotropic;
 use crate::largest::{LargestDraws, LargestErrors, Sampled};
 use crate::measure::{DesignMeasure, Part};
 use crate::navigation::Quadratic;
-use crate::setup::{DesignSetup, level};
+use crate::setup::{Setup, level};
 use octant_calibration::covariance::Covariance;
 use octant_calibration::schedule::DoesNotFit;
 use octant_calibration::sequence::{Sequence, Stop};
@@ -32,7 +32,7 @@ impl MeasureWeights {
     ///
     /// # Errors
     /// If the calibration is shorter than a dwell can be.
-    pub fn new(setup: &DesignSetup, measure: DesignMeasure) -> Result<Self, DoesNotFit> {
+    pub fn new(setup: &Setup, measure: DesignMeasure) -> Result<Self, DoesNotFit> {
         let drift = setup.drift();
         let earth = &setup.conditions.platform.earth;
         let Some(part) = measure.largest() else {
@@ -56,7 +56,7 @@ impl MeasureWeights {
     }
 }
 
-impl DesignSetup {
+impl Setup {
     /// Makes the draws from which largest errors are predicted.
     #[must_use]
     pub fn largest(&self) -> LargestDraws {
@@ -91,7 +91,7 @@ pub struct Judge {
 impl Judge {
     /// Creates the judge of a measure.
     #[must_use]
-    pub fn new(setup: &DesignSetup, weights: &MeasureWeights) -> Self {
+    pub fn new(setup: &Setup, weights: &MeasureWeights) -> Self {
         Self { evaluator: Evaluator::new(setup.conditions.clone()), weights: weights.clone() }
     }
 

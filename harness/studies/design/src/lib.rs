@@ -41,4 +41,4 @@ pub mod setup;
 pub mod shortest;
 
 pub use judge::{Judge, MeasureWeights};
-pub use setup::{DesignError, DesignSetup, Rotation};
+pub use setup::{DesignError, Rotation, Setup};

@@ -9,7 +9,7 @@ use crate::judge::{Judge, MeasureWeights};
 use crate::measure::DesignMeasure;
 use crate::mutate::{changed, random};
 use crate::ranked::rank;
-use crate::setup::{DesignError, DesignSetup};
+use crate::setup::{DesignError, Setup};
 use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool;
 use octant_calibration::positions::SEQUENCES;
@@ -33,7 +33,7 @@ const STARTS_MAX: u64 = 200;
 #[derive(Clone, Debug)]
 pub struct SearchProblem {
     /// The scenario.
-    pub setup: DesignSetup,
+    pub setup: Setup,
     /// Measure to minimise.
     pub measure: DesignMeasure,
     /// The same, prepared.
@@ -134,7 +134,7 @@ impl SearchProblem {
     /// # Errors
     /// If the limits leave nothing to choose from.
     pub fn new(
-        setup: DesignSetup,
+        setup: Setup,
         measure: DesignMeasure,
         limits: Limits,
         seed: u64,

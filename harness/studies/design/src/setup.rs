@@ -92,7 +92,7 @@ impl Rotation {
 
 /// A scenario as a design sees it.
 #[derive(Clone, Debug)]
-pub struct DesignSetup {
+pub struct Setup {
     /// The core's configuration, with the scenario's own calibration.
     pub config: CoreConfig,
     /// Attitude of the case.
@@ -108,7 +108,7 @@ pub struct DesignSetup {
     pub(crate) truth: EnsembleTruth,
 }
 
-impl DesignSetup {
+impl Setup {
     /// Reads what a design needs from a scenario.
     ///
     /// # Errors
@@ -269,7 +269,7 @@ fn check(truth: &EnsembleTruth) -> Result<(), DesignError> {
     Ok(())
 }
 
-impl DesignSetup {
+impl Setup {
     /// Computes the weights of navigation.
     #[must_use]
     pub fn drift(&self) -> Drift {

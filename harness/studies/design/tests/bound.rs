@@ -6,12 +6,12 @@ use octant_calibration::sequence::{Sequence, Stop};
 use octant_design::bound::{LEFT, bound, known_but_isotropic};
 use octant_design::judge::{Judge, MeasureWeights};
 use octant_design::measure::DesignMeasure;
-use octant_design::setup::{DesignSetup, Rotation};
+use octant_design::setup::{Rotation, Setup};
 use octant_earth::units::DEG;
 use octant_random::normal::words;
 use octant_random::stream::{Phase, key};
 
-fn longitude(setup: &DesignSetup) -> Judge {
+fn longitude(setup: &Setup) -> Judge {
     let measure = DesignMeasure::named("longitude").unwrap();
     Judge::new(setup, &MeasureWeights::new(setup, measure).unwrap())
 }

@@ -1,7 +1,7 @@
 //! Cells of the reference table: instruments, durations, and what an independent covariance analysis says
 //! of them.
 
-use octant_design::setup::{DesignSetup, Rotation};
+use octant_design::setup::{Rotation, Setup};
 use octant_scenario::Scenario;
 use std::path::Path;
 
@@ -49,8 +49,8 @@ impl Cell {
         Scenario::parse(&text, "cell.toml", Path::new(""), &[]).unwrap()
     }
 
-    pub(crate) fn setup(&self, rotation: Rotation) -> DesignSetup {
-        DesignSetup::of(&self.scenario("")).unwrap().with_rotation(rotation)
+    pub(crate) fn setup(&self, rotation: Rotation) -> Setup {
+        Setup::of(&self.scenario("")).unwrap().with_rotation(rotation)
     }
 
     pub(crate) fn duration_s(&self) -> f64 {

@@ -9,7 +9,7 @@ use octant_calibration::sequence::{Sequence, Stop};
 use octant_design::evaluate::Evaluator;
 use octant_design::judge::{Judge, MeasureWeights};
 use octant_design::measure::DesignMeasure;
-use octant_design::setup::{DesignSetup, Rotation};
+use octant_design::setup::{Rotation, Setup};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::DEG;
 use octant_observe::covariance::arcmin_m;
@@ -17,12 +17,12 @@ use octant_observe::covariance::arcmin_m;
 /// Allowed difference of a measure from the full recursion: times of measurements are simplified.
 const PART: f64 = 0.01;
 
-fn judge(setup: &DesignSetup, name: &str) -> Judge {
+fn judge(setup: &Setup, name: &str) -> Judge {
     Judge::new(setup, &MeasureWeights::new(setup, DesignMeasure::named(name).unwrap()).unwrap())
 }
 
 /// Root mean square of the longitude error over hours 69 to 72 by the full recursion, arcmin.
-fn observed_rms72(setup: &DesignSetup, sequence: &Sequence, duration_s: f64) -> f64 {
+fn observed_rms72(setup: &Setup, sequence: &Sequence, duration_s: f64) -> f64 {
     let predicted = setup.observe(sequence, duration_s).unwrap();
     let earth = Ellipsoid::at(setup.config.site.latitude_rad, setup.config.site.height_m);
     let last: Vec<f64> = predicted
@@ -43,7 +43,7 @@ fn own(stops: &[(f64, f64, f64)]) -> Sequence {
     Sequence::new(&stops.iter().map(stop).collect::<Vec<_>>(), 1).unwrap()
 }
 
-fn prior(setup: &DesignSetup) -> Covariance {
+fn prior(setup: &Setup) -> Covariance {
     let calibration = setup.config.calibration.as_ref().unwrap();
     let Estimator::Kalman(kalman) = &calibration.estimator else { panic!("{calibration:?}") };
     Covariance::from_sigmas(&prior_sigmas(kalman))
@@ -106,7 +106,7 @@ const DOCKSIDE: &str = "[motion]\nkind = \"dockside\"\n[motion.ship]\npreset = \
 #[test]
 fn dockside_the_covariance_is_that_of_the_full_recursion() {
     let cell: &Cell = &CELLS[1];
-    let setup = DesignSetup::of(&cell.scenario(DOCKSIDE)).unwrap();
+    let setup = Setup::of(&cell.scenario(DOCKSIDE)).unwrap();
     let mut judge = judge(&setup, "longitude");
     let mut exact = setup.clone();
     (exact.conditions.initial, exact.conditions.part_s) = (prior(&setup), 1.0);

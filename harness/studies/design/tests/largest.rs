@@ -9,16 +9,16 @@ use octant_design::judge::{Judge, MeasureWeights};
 use octant_design::largest::LargestErrors;
 use octant_design::measure::DesignMeasure;
 use octant_design::search::{SearchEffort, SearchProblem};
-use octant_design::setup::{DesignSetup, Rotation};
+use octant_design::setup::{Rotation, Setup};
 use octant_earth::ellipsoid::EARTH_RATE_RADPS;
 use octant_earth::units::ARCMIN;
 
-fn judge(setup: &DesignSetup, name: &str) -> Judge {
+fn judge(setup: &Setup, name: &str) -> Judge {
     Judge::new(setup, &MeasureWeights::new(setup, DesignMeasure::named(name).unwrap()).unwrap())
 }
 
 /// Largest errors to 72 h after eight positions, once per 4 h.
-fn eight(setup: &DesignSetup, duration_s: f64) -> LargestErrors {
+fn eight(setup: &Setup, duration_s: f64) -> LargestErrors {
     let passes = (duration_s / (4.0 * 3600.0)) as u32;
     let sequence = from_degrees(named("eight").unwrap(), passes).unwrap();
     let all = setup.largest_after(&sequence, duration_s).unwrap();

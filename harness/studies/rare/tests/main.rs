@@ -1,4 +1,5 @@
-//! Tests of the numerical core against closed forms.
+//! Tests of rare failures, in one program.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
-mod coverage;
-mod honest;
+
+mod estimators;
+mod runs;

@@ -1,9 +1,9 @@
 //! Runs candidates, each beside the run without faults.
 
-use crate::candidate::{FaultCandidate, PlacedFault};
-use crate::error::FaultSearchError;
-use crate::space::{FaultForm, KeyValues, SearchSpace};
-use crate::trial::{FaultTrial, TrialEffect, TrialResult};
+use crate::candidate::{Candidate, PlacedFault};
+use crate::error::SearchError;
+use crate::space::{Form, KeyValues, Space};
+use crate::trial::{Trial, TrialEffect, TrialResult};
 use octant_base::control::Control;
 use octant_random::draws::Draws;
 use octant_run::Ended;
@@ -38,20 +38,20 @@ impl SearchBench {
         seed: u64,
         jobs: usize,
         control: &Control,
-    ) -> Result<Self, FaultSearchError> {
+    ) -> Result<Self, SearchError> {
         if !scenario.faults.is_empty() {
-            return Err(FaultSearchError::HasFaults(scenario.faults.len()));
+            return Err(SearchError::HasFaults(scenario.faults.len()));
         }
-        let base = scenario.to_toml_with(&[], &[]).map_err(FaultSearchError::Unwritable)?;
+        let base = scenario.to_toml_with(&[], &[]).map_err(SearchError::Unwritable)?;
         let twin = run_method(scenario, Method::Primary, seed, StreamKeeping::Hash, control)?;
         if twin.ended == Ended::Cancelled {
-            return Err(FaultSearchError::Cancelled);
+            return Err(SearchError::Cancelled);
         }
         match twin.calibration.as_ref() {
-            None => return Err(FaultSearchError::NoCalibration),
+            None => return Err(SearchError::NoCalibration),
             Some(score) => {
                 if let Some(reason) = &score.refused {
-                    return Err(FaultSearchError::TwinRefused(reason.clone()));
+                    return Err(SearchError::TwinRefused(reason.clone()));
                 }
             }
         }
@@ -72,12 +72,7 @@ impl SearchBench {
 
     /// The scenario with the faults of a candidate as TOML. `about` are the lines of a comment at its top.
     #[must_use]
-    pub fn text_of(
-        &self,
-        space: &SearchSpace,
-        candidate: &FaultCandidate,
-        about: &[String],
-    ) -> String {
+    pub fn text_of(&self, space: &Space, candidate: &Candidate, about: &[String]) -> String {
         let about: String = about.iter().map(|line| format!("# {line}\n")).collect();
         format!("{about}{}\n{}", self.base, candidate.to_toml(space))
     }
@@ -92,7 +87,7 @@ impl SearchBench {
     }
 
     /// The reason why the scenario can't have the faults of a candidate, if there is one.
-    fn check(&self, space: &SearchSpace, candidate: &FaultCandidate) -> Result<(), String> {
+    fn check(&self, space: &Space, candidate: &Candidate) -> Result<(), String> {
         self.scenario_of(&self.text_of(space, candidate, &[])).map(|_| ())
     }
 
@@ -103,10 +98,10 @@ impl SearchBench {
     /// If the end was asked for.
     pub fn run(
         &self,
-        space: &SearchSpace,
-        candidates: Vec<FaultCandidate>,
+        space: &Space,
+        candidates: Vec<Candidate>,
         control: &Control,
-    ) -> Result<Vec<FaultTrial>, FaultSearchError> {
+    ) -> Result<Vec<Trial>, SearchError> {
         let scenarios: Vec<Result<Scenario, String>> = (candidates.iter())
             .map(|candidate| self.scenario_of(&self.text_of(space, candidate, &[])))
             .collect();
@@ -130,7 +125,7 @@ impl SearchBench {
         let is_cancelled = cancelled.into_inner().unwrap_or_else(PoisonError::into_inner);
         let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
         if is_cancelled || results.len() != plans.len() {
-            return Err(FaultSearchError::Cancelled);
+            return Err(SearchError::Cancelled);
         }
         for (place, scenario) in scenarios.into_iter().enumerate() {
             if let Err(reason) = scenario {
@@ -138,7 +133,7 @@ impl SearchBench {
             }
         }
         let results = candidates.into_iter().zip(results.into_values());
-        Ok(results.map(|(candidate, result)| FaultTrial { candidate, result }).collect())
+        Ok(results.map(|(candidate, result)| Trial { candidate, result }).collect())
     }
 
     fn judged(&self, scenario: &Scenario, run: Result<MethodRun, MethodError>) -> TrialResult {
@@ -160,11 +155,11 @@ impl SearchBench {
     ///
     /// # Errors
     /// If it can't be read or run.
-    pub fn again(&self, text: &str, control: &Control) -> Result<TrialResult, FaultSearchError> {
-        let scenario = self.scenario_of(text).map_err(FaultSearchError::Unreadable)?;
+    pub fn again(&self, text: &str, control: &Control) -> Result<TrialResult, SearchError> {
+        let scenario = self.scenario_of(text).map_err(SearchError::Unreadable)?;
         let run = run_method(&scenario, Method::Primary, self.seed, StreamKeeping::Hash, control)?;
         if run.ended == Ended::Cancelled {
-            return Err(FaultSearchError::Cancelled);
+            return Err(SearchError::Cancelled);
         }
         Ok(self.judged(&scenario, Ok(run)))
     }
@@ -172,9 +167,9 @@ impl SearchBench {
     /// Leaves out of a space the forms, and the choices of keys, that the scenario can't have; with the reasons
     /// for the kinds of which no form is left.
     #[must_use]
-    pub fn possible(&self, space: &SearchSpace) -> (SearchSpace, Vec<(String, String)>) {
+    pub fn possible(&self, space: &Space) -> (Space, Vec<(String, String)>) {
         let mut left_out: Vec<(String, String)> = Vec::new();
-        let mut forms: Vec<FaultForm> = Vec::new();
+        let mut forms: Vec<Form> = Vec::new();
         for (index, form) in space.forms.iter().enumerate() {
             match self.possible_form(space, index) {
                 Ok(kept) => forms.push(kept),
@@ -183,11 +178,11 @@ impl SearchBench {
         }
         left_out.retain(|(name, _)| !forms.iter().any(|form| form.kind.name == name));
         left_out.dedup_by(|a, b| a.0 == b.0);
-        (SearchSpace { forms }, left_out)
+        (Space { forms }, left_out)
     }
 
     /// A form with the choices that the scenario can have.
-    fn possible_form(&self, space: &SearchSpace, form: usize) -> Result<FaultForm, String> {
+    fn possible_form(&self, space: &Space, form: usize) -> Result<Form, String> {
         self.tried(space, form, None)?;
         let mut kept = space.forms[form].clone();
         for (key, of) in kept.keys.iter_mut().enumerate() {
@@ -205,12 +200,7 @@ impl SearchBench {
     }
 
     /// Tries random candidates of a form, with one key at a place, until the scenario can have one.
-    fn tried(
-        &self,
-        space: &SearchSpace,
-        form: usize,
-        other: Option<(usize, f64)>,
-    ) -> Result<(), String> {
+    fn tried(&self, space: &Space, form: usize, other: Option<(usize, f64)>) -> Result<(), String> {
         let mut draws = Draws::of(0, "faults search possible", form as u64);
         let mut last = Ok(());
         for _ in 0..TRIES {
@@ -218,7 +208,7 @@ impl SearchBench {
             if let Some((key, place)) = other {
                 fault.places[key] = place;
             }
-            last = self.check(space, &FaultCandidate { faults: vec![fault] });
+            last = self.check(space, &Candidate { faults: vec![fault] });
             if last.is_ok() {
                 break;
             }
@@ -228,7 +218,7 @@ impl SearchBench {
 
     /// The first form of a space of which the scenario can't have every choice, with the reason.
     #[must_use]
-    pub fn impossible(&self, space: &SearchSpace) -> Option<(usize, String)> {
+    pub fn impossible(&self, space: &Space) -> Option<(usize, String)> {
         (0..space.forms.len()).find_map(|form| {
             let keys = space.forms[form].keys.iter().enumerate();
             let choices = keys.flat_map(|(key, of)| {

@@ -1,6 +1,6 @@
 //! The space that the catalogue of faults gives: every kind, around the values of its example.
 
-use crate::space::{FaultForm, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, SearchSpace};
+use crate::space::{Form, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, Space};
 use crate::toml_text::written;
 use octant_faults::catalogue::{Acts, FaultKind, Lasts, ParameterBounds, Takes};
 use octant_faults::kinds;
@@ -33,13 +33,13 @@ pub fn searchable() -> impl Iterator<Item = &'static FaultKind> {
 /// bounds of the kind, durations from a sample to the whole run, onsets anywhere in it, each channel alone and
 /// each triad.
 #[must_use]
-pub fn derived(kinds: &[&'static FaultKind], times: RunTimes) -> SearchSpace {
+pub fn derived(kinds: &[&'static FaultKind], times: RunTimes) -> Space {
     let forms = kinds.iter().flat_map(|kind| forms_of(kind, times)).collect();
-    SearchSpace { forms }
+    Space { forms }
 }
 
 /// A form for each dimension that the parameters of a kind can have: gyros and accelerometers apart.
-fn forms_of(kind: &'static FaultKind, times: RunTimes) -> Vec<FaultForm> {
+fn forms_of(kind: &'static FaultKind, times: RunTimes) -> Vec<Form> {
     let example = fault_example(kind.name).unwrap_or_default();
     let example = example.strip_prefix("[[faults]]\n").unwrap_or(&example);
     let Ok(example) = example.parse::<toml::Table>() else { return Vec::new() };
@@ -69,7 +69,7 @@ fn forms_of(kind: &'static FaultKind, times: RunTimes) -> Vec<FaultForm> {
             if kind.lasts != Lasts::Instant {
                 keys.push(FormKey { name: "duration".to_owned(), values: duration(times) });
             }
-            FaultForm { kind, keys }
+            Form { kind, keys }
         })
         .collect()
 }

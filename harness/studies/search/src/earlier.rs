@@ -4,11 +4,11 @@
 //! noticed. A weakened screen shows at once: its faults raise another report now, or none. So a few faults of each screen
 //! are run again, and the search goes on with those of the screens whose report changed.
 
-use crate::candidate::FaultCandidate;
-use crate::error::FaultSearchError;
+use crate::candidate::Candidate;
+use crate::error::SearchError;
 use crate::journal;
-use crate::space::SearchSpace;
-use crate::trial::FaultTrial;
+use crate::space::Space;
+use crate::trial::Trial;
 use octant_base::number::counted;
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
@@ -22,7 +22,7 @@ const ASKED: usize = 4;
 #[derive(Clone, Debug)]
 pub struct EarlierSearch {
     /// The trials.
-    pub trials: Vec<FaultTrial>,
+    pub trials: Vec<Trial>,
     /// BLAKE3 of its journal.
     pub journal_blake3: String,
 }
@@ -32,7 +32,7 @@ impl EarlierSearch {
     ///
     /// # Errors
     /// If there is none, it is damaged, of a newer version, of another space, or has no trial.
-    pub fn read(path: &Path, space: &SearchSpace) -> Result<Self, FaultSearchError> {
+    pub fn read(path: &Path, space: &Space) -> Result<Self, SearchError> {
         let (trials, journal_blake3) = journal::read(path, space)?;
         Ok(Self { trials, journal_blake3 })
     }
@@ -41,7 +41,7 @@ impl EarlierSearch {
 /// A fault that is run again, and the screen whose it is.
 #[derive(Clone, Debug)]
 pub(crate) struct AskedFault {
-    pub(crate) candidate: FaultCandidate,
+    pub(crate) candidate: Candidate,
     pub(crate) screen: usize,
 }
 
@@ -78,12 +78,10 @@ pub struct ScreenFound {
 impl EarlierFound {
     /// Compares the trials of a search with those of the earlier one.
     #[must_use]
-    pub fn of(earlier: &EarlierSearch, trials: &[FaultTrial]) -> Self {
-        let now =
-            |before: &FaultTrial| trials.iter().find(|trial| trial.candidate == before.candidate);
-        let missed: Vec<&FaultTrial> =
-            earlier.trials.iter().filter(|trial| is_missed(trial)).collect();
-        let again: Vec<&FaultTrial> = missed.iter().filter_map(|before| now(before)).collect();
+    pub fn of(earlier: &EarlierSearch, trials: &[Trial]) -> Self {
+        let now = |before: &Trial| trials.iter().find(|trial| trial.candidate == before.candidate);
+        let missed: Vec<&Trial> = earlier.trials.iter().filter(|trial| is_missed(trial)).collect();
+        let again: Vec<&Trial> = missed.iter().filter_map(|before| now(before)).collect();
         let mut screens: BTreeMap<String, ScreenFound> = BTreeMap::new();
         for before in earlier.trials.iter().filter(|trial| trial.candidate.faults.len() == 1) {
             let Some(report) = report_of(before) else { continue };
@@ -145,7 +143,7 @@ struct Screen {
     /// Its report, without numbers and names; `None` for what was harmful and unnoticed.
     report: Option<String>,
     /// Faults that it noticed, the next one last.
-    faults: Vec<FaultCandidate>,
+    faults: Vec<Candidate>,
     asked: usize,
     /// Faults that answered otherwise, or as before.
     changed: usize,
@@ -153,7 +151,7 @@ struct Screen {
 }
 
 impl Screen {
-    fn new(report: Option<String>, faults: Vec<FaultCandidate>) -> Self {
+    fn new(report: Option<String>, faults: Vec<Candidate>) -> Self {
         Self { report, faults, asked: 0, changed: 0, same: 0 }
     }
 
@@ -171,7 +169,7 @@ impl Screen {
 struct Known<'a> {
     is_harmless: bool,
     size: f64,
-    candidate: &'a FaultCandidate,
+    candidate: &'a Candidate,
 }
 
 /// The screens of an earlier search, and how they answer now.
@@ -180,7 +178,7 @@ pub(crate) struct EarlierScreens(Vec<Screen>);
 
 impl EarlierScreens {
     /// Sorts the single faults of a search by what noticed them.
-    pub(crate) fn of(trials: &[FaultTrial], space: &SearchSpace) -> Self {
+    pub(crate) fn of(trials: &[Trial], space: &Space) -> Self {
         let mut reports: BTreeMap<String, BTreeMap<usize, Vec<Known<'_>>>> = BTreeMap::new();
         let mut noticed: BTreeMap<usize, usize> = BTreeMap::new();
         for trial in trials {
@@ -238,7 +236,7 @@ impl EarlierScreens {
     }
 
     /// Takes the result of a fault that was asked for; returns whether its screen answered otherwise.
-    pub(crate) fn learn(&mut self, screen: usize, trial: &FaultTrial) -> bool {
+    pub(crate) fn learn(&mut self, screen: usize, trial: &Trial) -> bool {
         let Some(screen) = self.0.get_mut(screen) else { return false };
         if screen.report.is_none() {
             *(if is_missed(trial) { &mut screen.same } else { &mut screen.changed }) += 1;
@@ -251,21 +249,21 @@ impl EarlierScreens {
 }
 
 /// True for what was harmful and unnoticed.
-fn is_missed(trial: &FaultTrial) -> bool {
+fn is_missed(trial: &Trial) -> bool {
     trial.unnoticed_harm().is_some_and(|harm| harm >= 1.0)
 }
 
 /// Faults that were harmful and unnoticed, the worst last.
-fn missed(trials: &[FaultTrial]) -> Vec<FaultCandidate> {
-    let mut all: Vec<&FaultTrial> = trials.iter().filter(|trial| is_missed(trial)).collect();
-    let harm = |trial: &FaultTrial| trial.unnoticed_harm().unwrap_or(0.0);
+fn missed(trials: &[Trial]) -> Vec<Candidate> {
+    let mut all: Vec<&Trial> = trials.iter().filter(|trial| is_missed(trial)).collect();
+    let harm = |trial: &Trial| trial.unnoticed_harm().unwrap_or(0.0);
     all.sort_by(|a, b| harm(a).total_cmp(&harm(b)));
     all.into_iter().map(|trial| trial.candidate.clone()).collect()
 }
 
 /// Report that a fault raised, without numbers and names of parameters, which differ from fault to fault; of a refusal,
 /// its reason without the details.
-fn report_of(trial: &FaultTrial) -> Option<String> {
+fn report_of(trial: &Trial) -> Option<String> {
     let by = trial.effect().filter(|effect| effect.fired)?.noticed_by.as_ref()?;
     let differs = |word: &&str| !word.contains(|c: char| c == '_' || c.is_ascii_digit());
     let of = |part: &str| part.split_whitespace().filter(differs).collect::<Vec<_>>().join(" ");

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// Reasons why a search gave no result.
 #[derive(Debug, thiserror::Error)]
-pub enum FaultSearchError {
+pub enum SearchError {
     /// The scenario has faults of its own.
     #[error("found a scenario with {0} of its own [[faults]], expected none: the search sets them")]
     HasFaults(usize),
@@ -58,7 +58,7 @@ pub enum FaultSearchError {
     Cancelled,
 }
 
-impl Failing for FaultSearchError {
+impl Failing for SearchError {
     fn kind(&self) -> FailureKind {
         match self {
             Self::Method(error) => error.kind(),
@@ -75,7 +75,7 @@ impl Failing for FaultSearchError {
     }
 }
 
-impl From<ChainedLinesError> for FaultSearchError {
+impl From<ChainedLinesError> for SearchError {
     fn from(error: ChainedLinesError) -> Self {
         match error {
             ChainedLinesError::System { action, path, source } => {

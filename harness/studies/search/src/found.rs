@@ -1,8 +1,8 @@
 //! Result of a search.
 
 use crate::earlier::EarlierFound;
-use crate::space::SearchSpace;
-use crate::trial::{FaultTrial, TrialEffect, TrialResult};
+use crate::space::Space;
+use crate::trial::{Trial, TrialEffect, TrialResult};
 use octant_base::number::{counted, significant};
 use octant_score::counterfactual::HARMFUL_SHIFT_SIGMA;
 use serde::{Deserialize, Serialize};
@@ -79,7 +79,7 @@ pub struct FoundFault {
 impl FoundFault {
     /// A fault that went unnoticed.
     #[must_use]
-    pub fn of(trial: &FaultTrial, space: &SearchSpace) -> Option<Self> {
+    pub fn of(trial: &Trial, space: &Space) -> Option<Self> {
         let effect = trial.effect()?.clone();
         let (words, toml) = (trial.candidate.words(space), trial.candidate.to_toml(space));
         Some(Self { words, toml, harm: effect.harm(), effect })
@@ -113,7 +113,7 @@ pub struct UnnoticedShift {
 impl SearchFound {
     /// Gathers the trials of a search; `minimal` isn't set.
     #[must_use]
-    pub fn of(trials: &[FaultTrial], space: &SearchSpace) -> Self {
+    pub fn of(trials: &[Trial], space: &Space) -> Self {
         let mut found = Self {
             schema: SEARCH_SCHEMA,
             octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -151,12 +151,7 @@ impl SearchFound {
         found
     }
 
-    fn count(
-        &mut self,
-        trial: &FaultTrial,
-        space: &SearchSpace,
-        kinds: &mut BTreeMap<String, KindFound>,
-    ) {
+    fn count(&mut self, trial: &Trial, space: &Space, kinds: &mut BTreeMap<String, KindFound>) {
         let words = || trial.candidate.words(space);
         let effect = match &trial.result {
             TrialResult::Refused(_) => {
@@ -287,8 +282,8 @@ pub fn effect_words(effect: &TrialEffect) -> String {
 
 /// The worst trial that went unnoticed; of two alike the first.
 #[must_use]
-pub fn worst(trials: &[FaultTrial]) -> Option<&FaultTrial> {
-    let mut worst: Option<(&FaultTrial, f64)> = None;
+pub fn worst(trials: &[Trial]) -> Option<&Trial> {
+    let mut worst: Option<(&Trial, f64)> = None;
     for trial in trials {
         if let Some(harm) = trial.unnoticed_harm()
             && worst.is_none_or(|(_, known)| harm > known)

@@ -9,10 +9,10 @@
 //!
 //! Each proposal depends on the seed and the results before it alone.
 
-use crate::candidate::{FaultCandidate, PlacedFault};
+use crate::candidate::{Candidate, PlacedFault};
 use crate::earlier::{AskedFault, EarlierScreens};
-use crate::space::{KeyValues, SearchSpace};
-use crate::trial::FaultTrial;
+use crate::space::{KeyValues, Space};
+use crate::trial::Trial;
 use octant_random::draws::Draws;
 
 /// Runs of a line, at most.
@@ -45,8 +45,8 @@ const RUNS_MAX_HARMLESS: u32 = 2;
 
 /// A guided search.
 #[derive(Debug)]
-pub struct SearchGuide<'a> {
-    space: &'a SearchSpace,
+pub struct Guide<'a> {
+    space: &'a Space,
     seed: u64,
     /// Share of new lines with two faults.
     pairs: f64,
@@ -62,14 +62,14 @@ pub struct SearchGuide<'a> {
 
 #[derive(Clone, Debug)]
 struct Elite {
-    candidate: FaultCandidate,
+    candidate: Candidate,
     harm: f64,
 }
 
 /// A search along the size of the first fault of a candidate.
 #[derive(Debug)]
 struct SizeLine {
-    candidate: FaultCandidate,
+    candidate: Candidate,
     /// Key of the size; `None` for a fault without one, which is run once.
     key: Option<usize>,
     /// Largest place that went unnoticed, with its harm.
@@ -84,7 +84,7 @@ struct SizeLine {
 }
 
 impl SizeLine {
-    fn at(&self, place: f64) -> FaultCandidate {
+    fn at(&self, place: f64) -> Candidate {
         let mut candidate = self.candidate.clone();
         if let Some(key) = self.key {
             candidate.faults[0].places[key] = place;
@@ -93,10 +93,10 @@ impl SizeLine {
     }
 }
 
-impl<'a> SearchGuide<'a> {
+impl<'a> Guide<'a> {
     /// Begins a search. `pairs` is the share of new lines with two faults at once.
     #[must_use]
-    pub fn new(space: &'a SearchSpace, seed: u64, pairs: f64) -> Self {
+    pub fn new(space: &'a Space, seed: u64, pairs: f64) -> Self {
         let (lines, order, elites) = (Vec::new(), Vec::new(), Vec::new());
         let screens = EarlierScreens::default();
         Self { space, seed, pairs, lines, begun: 0, order, elites, screens }
@@ -109,7 +109,7 @@ impl<'a> SearchGuide<'a> {
 
     /// Proposes candidates. Their results are taken by [`Self::learn`], in the same order, before the next ones
     /// are proposed.
-    pub fn propose(&mut self, count: usize) -> Vec<FaultCandidate> {
+    pub fn propose(&mut self, count: usize) -> Vec<Candidate> {
         self.lines.retain(|line| line.next.is_some());
         let count = if self.screens.are_asked() { count.min(ASKED_TOGETHER) } else { count };
         while self.lines.len() < count {
@@ -121,7 +121,7 @@ impl<'a> SearchGuide<'a> {
     }
 
     /// Takes the results of the candidates that were proposed last.
-    pub fn learn(&mut self, trials: &[FaultTrial]) {
+    pub fn learn(&mut self, trials: &[Trial]) {
         // What a line aims at is the same for all of one proposal.
         let worst = self.elites.first().map_or(1.0, |elite| elite.harm).max(1.0);
         for (place, trial) in trials.iter().enumerate() {
@@ -147,7 +147,7 @@ impl<'a> SearchGuide<'a> {
         self.elites.sort_by(|a, b| b.harm.total_cmp(&a.harm));
         let mut kept: Vec<Elite> = Vec::new();
         for elite in self.elites.drain(..) {
-            let forms = |candidate: &FaultCandidate| -> Vec<usize> {
+            let forms = |candidate: &Candidate| -> Vec<usize> {
                 candidate.faults.iter().map(|fault| fault.form).collect()
             };
             let alike = kept.iter().filter(|k| forms(&k.candidate) == forms(&elite.candidate));
@@ -182,12 +182,12 @@ impl<'a> SearchGuide<'a> {
             let form = self.next_form(&mut draws);
             let fault = PlacedFault::random(self.space, form, &mut draws);
             // Not at an end of the range, from which a line goes one way only.
-            (FaultCandidate { faults: vec![fault] }, 0.3 + 0.4 * draws.unit())
+            (Candidate { faults: vec![fault] }, 0.3 + 0.4 * draws.unit())
         } else {
             let near = self.elites[self.one_of_the_worst(&mut draws)].candidate.clone();
             let faults = near.faults.iter().map(|fault| self.changed(fault, &mut draws)).collect();
             let start = self.size_of(&near).unwrap_or(0.5);
-            (FaultCandidate { faults }, start)
+            (Candidate { faults }, start)
         };
         if is_pair && candidate.faults.len() == 1 {
             let second = if self.elites.is_empty() || draws.unit() < 0.5 {
@@ -222,12 +222,12 @@ impl<'a> SearchGuide<'a> {
     }
 
     /// Key of the size of a candidate.
-    fn size_key(&self, candidate: &FaultCandidate) -> Option<usize> {
+    fn size_key(&self, candidate: &Candidate) -> Option<usize> {
         self.space.forms[candidate.faults[0].form].size()
     }
 
     /// Place of the size of a candidate.
-    fn size_of(&self, candidate: &FaultCandidate) -> Option<f64> {
+    fn size_of(&self, candidate: &Candidate) -> Option<f64> {
         candidate.faults[0].places.get(self.size_key(candidate)?).copied()
     }
 
@@ -250,7 +250,7 @@ impl<'a> SearchGuide<'a> {
 }
 
 /// Sets where a line goes on after a result.
-fn follow(line: &mut SizeLine, space: &SearchSpace, trial: &FaultTrial, worst: f64) {
+fn follow(line: &mut SizeLine, space: &Space, trial: &Trial, worst: f64) {
     let Some(place) = line.next.take() else { return };
     line.runs += 1;
     let Some(key) = line.key else { return };
@@ -303,10 +303,10 @@ fn follow(line: &mut SizeLine, space: &SearchSpace, trial: &FaultTrial, worst: f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::{FaultForm, FormKey, NumberRange};
+    use crate::space::{Form, FormKey, NumberRange};
     use crate::trial::{TrialEffect, TrialResult};
 
-    fn space() -> SearchSpace {
+    fn space() -> Space {
         let kind = octant_faults::kinds::named("bias-step").unwrap();
         let unit = "deg/h".to_owned();
         let range = |from, to, is_logarithmic| {
@@ -327,12 +327,12 @@ mod tests {
             key("amplitude", range(1e-3, 1e3, true)),
             key("onset", range(0.0, 100.0, false)),
         ];
-        SearchSpace { forms: vec![FaultForm { kind, keys }] }
+        Space { forms: vec![Form { kind, keys }] }
     }
 
     /// An instrument whose harm is the size, and which notices everything but a narrow window: y channel, from
     /// 40 to 60 s, below 30.
-    fn effect(space: &SearchSpace, candidate: &FaultCandidate) -> TrialEffect {
+    fn effect(space: &Space, candidate: &Candidate) -> TrialEffect {
         let [channel, size, onset] = candidate.faults[0].places[..] else { panic!() };
         let KeyValues::Between(range) = &space.forms[0].keys[1].values else { panic!() };
         let size = range.at(size);
@@ -348,14 +348,14 @@ mod tests {
 
     fn worst_of(runs: usize, seed: u64) -> (f64, usize) {
         let space = space();
-        let mut guide = SearchGuide::new(&space, seed, 0.0);
+        let mut guide = Guide::new(&space, seed, 0.0);
         let (mut worst, mut done) = (0.0f64, 0);
         let mut first = usize::MAX;
         while done < runs {
-            let trials: Vec<FaultTrial> = (guide.propose(8).into_iter())
+            let trials: Vec<Trial> = (guide.propose(8).into_iter())
                 .map(|candidate| {
                     let result = TrialResult::Ran(effect(&space, &candidate));
-                    FaultTrial { candidate, result }
+                    Trial { candidate, result }
                 })
                 .collect();
             for trial in &trials {

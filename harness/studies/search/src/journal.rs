@@ -2,10 +2,10 @@
 //!
 //! It has [chained lines](octant_base::chained_lines) of JSON: the first names the search, each further one is a trial.
 
-use crate::error::FaultSearchError;
-use crate::space::SearchSpace;
+use crate::error::SearchError;
+use crate::space::Space;
 use crate::space_file::to_toml;
-use crate::trial::FaultTrial;
+use crate::trial::Trial;
 use octant_base::chained_lines::ChainedLines;
 use octant_base::not_finite;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub const JOURNAL_SCHEMA: u32 = 1;
 /// Identity of a search: one that differs in any of these has other candidates or other results.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SearchIdentity {
+pub struct Identity {
     /// [`JOURNAL_SCHEMA`].
     pub schema: u32,
     /// Version of the program.
@@ -38,19 +38,19 @@ pub struct SearchIdentity {
 
 /// An open journal.
 #[derive(Debug)]
-pub struct SearchJournal {
+pub struct Journal {
     lines: ChainedLines,
     /// Trials that it had when it was opened and that were not taken yet, first last.
-    known: Vec<FaultTrial>,
+    known: Vec<Trial>,
     line: usize,
 }
 
-impl SearchJournal {
+impl Journal {
     /// Opens a journal, or begins it.
     ///
     /// # Errors
     /// If it is of another search, is damaged, or the operating system refuses.
-    pub fn open(path: &Path, identity: &SearchIdentity) -> Result<Self, FaultSearchError> {
+    pub fn open(path: &Path, identity: &Identity) -> Result<Self, SearchError> {
         let mut known = Vec::new();
         let first = serde_json::to_string(identity).map_err(|error| unwritten(path, error))?;
         let lines = ChainedLines::open(
@@ -73,8 +73,8 @@ impl SearchJournal {
     /// If one is of another candidate than is asked for.
     pub fn take(
         &mut self,
-        candidates: &[crate::candidate::FaultCandidate],
-    ) -> Result<Option<Vec<FaultTrial>>, FaultSearchError> {
+        candidates: &[crate::candidate::Candidate],
+    ) -> Result<Option<Vec<Trial>>, SearchError> {
         if self.known.len() < candidates.len() {
             // A part of a proposal is run again as a whole.
             let kept = !self.known.is_empty();
@@ -84,11 +84,11 @@ impl SearchJournal {
             }
             return Ok(None);
         }
-        let trials: Vec<FaultTrial> = candidates.iter().filter_map(|_| self.known.pop()).collect();
+        let trials: Vec<Trial> = candidates.iter().filter_map(|_| self.known.pop()).collect();
         for (trial, candidate) in trials.iter().zip(candidates) {
             self.line += 1;
             if trial.candidate != *candidate {
-                return Err(FaultSearchError::OtherSearch {
+                return Err(SearchError::OtherSearch {
                     path: self.lines.path().to_owned(),
                     line: self.line,
                     problem: "found another candidate than this search has here".to_owned(),
@@ -102,7 +102,7 @@ impl SearchJournal {
     ///
     /// # Errors
     /// If the operating system refuses.
-    pub fn keep(&mut self, trials: &[FaultTrial]) -> Result<(), FaultSearchError> {
+    pub fn keep(&mut self, trials: &[Trial]) -> Result<(), SearchError> {
         self.line += trials.len();
         let texts: Result<Vec<String>, _> = trials.iter().map(serde_json::to_string).collect();
         let texts = texts.map_err(|error| unwritten(self.lines.path(), error))?;
@@ -114,14 +114,11 @@ impl SearchJournal {
 ///
 /// # Errors
 /// If there is no journal, it is damaged, of a newer version, of another space, or has no trial.
-pub(crate) fn read(
-    path: &Path,
-    space: &SearchSpace,
-) -> Result<(Vec<FaultTrial>, String), FaultSearchError> {
+pub(crate) fn read(path: &Path, space: &Space) -> Result<(Vec<Trial>, String), SearchError> {
     let (mut trials, mut hasher) = (Vec::new(), blake3::Hasher::new());
     let in_space = |line: &str| {
         refuse_newer(line)?;
-        let found: SearchIdentity = serde_json::from_str(line)
+        let found: Identity = serde_json::from_str(line)
             .map_err(|error| format!("expected the identity of a search: {error}"))?;
         if found.space_blake3 != hash_of(space) {
             return Err(
@@ -133,7 +130,7 @@ pub(crate) fn read(
     };
     ChainedLines::read(path, in_space, |json| {
         hasher.update(json.as_bytes());
-        let trial: FaultTrial =
+        let trial: Trial =
             not_finite::from_str(json).map_err(|error| format!("expected a trial: {error}"))?;
         let faults = &trial.candidate.faults;
         if faults.is_empty() || !faults.iter().all(|fault| fault.is_in(space)) {
@@ -144,13 +141,13 @@ pub(crate) fn read(
     })?;
     if trials.is_empty() {
         let problem = "found no trial after the first line, expected some".to_owned();
-        return Err(FaultSearchError::OtherSearch { path: path.to_owned(), line: 1, problem });
+        return Err(SearchError::OtherSearch { path: path.to_owned(), line: 1, problem });
     }
     Ok((trials, hasher.finalize().to_hex().to_string()))
 }
 
 /// BLAKE3 of a space.
-pub(crate) fn hash_of(space: &SearchSpace) -> String {
+pub(crate) fn hash_of(space: &Space) -> String {
     blake3::hash(to_toml(space).as_bytes()).to_hex().to_string()
 }
 
@@ -167,19 +164,19 @@ fn refuse_newer(line: &str) -> Result<(), String> {
     }
 }
 
-fn unwritten(path: &Path, error: serde_json::Error) -> FaultSearchError {
-    FaultSearchError::Journal { action: "write", path: path.to_owned(), source: error.into() }
+fn unwritten(path: &Path, error: serde_json::Error) -> SearchError {
+    SearchError::Journal { action: "write", path: path.to_owned(), source: error.into() }
 }
 
 /// Refuses the first line of a journal of another search, naming the field.
-fn refuse_other(identity: &SearchIdentity, line: &str) -> Result<(), String> {
+fn refuse_other(identity: &Identity, line: &str) -> Result<(), String> {
     refuse_newer(line)?;
-    let found: SearchIdentity = serde_json::from_str(line)
+    let found: Identity = serde_json::from_str(line)
         .map_err(|error| format!("expected the identity of a search: {error}"))?;
     if found == *identity {
         return Ok(());
     }
-    let fields = |identity: &SearchIdentity| {
+    let fields = |identity: &Identity| {
         serde_json::to_value(identity).ok().and_then(|value| value.as_object().cloned())
     };
     let (found, expected) =

@@ -1,13 +1,13 @@
 //! A Latin hypercube: as many candidates as runs, each value of each key spread evenly over its range.
 
-use crate::candidate::{FaultCandidate, PlacedFault};
-use crate::space::SearchSpace;
+use crate::candidate::{Candidate, PlacedFault};
+use crate::space::Space;
 use octant_random::draws::Draws;
 
 /// Draws all candidates (McKay, Beckman and Conover, 1979): forms, and the places of each key, are permutations
 /// of equal strata. `pairs` is the share of candidates with two faults.
 #[must_use]
-pub fn latin(space: &SearchSpace, seed: u64, pairs: f64, count: usize) -> Vec<FaultCandidate> {
+pub fn latin(space: &Space, seed: u64, pairs: f64, count: usize) -> Vec<Candidate> {
     let keys = space.forms.iter().map(|form| form.keys.len()).max().unwrap_or(0);
     let column = |name: String| strata(seed, &name, count);
     let columns = |fault: usize| -> Vec<Vec<f64>> {
@@ -25,7 +25,7 @@ pub fn latin(space: &SearchSpace, seed: u64, pairs: f64, count: usize) -> Vec<Fa
         .map(|index| {
             let faults = if doubled[index] < pairs { 2 } else { 1 };
             let of = of_faults.iter().take(faults);
-            FaultCandidate { faults: of.map(|columns| placed(columns, index)).collect() }
+            Candidate { faults: of.map(|columns| placed(columns, index)).collect() }
         })
         .collect()
 }

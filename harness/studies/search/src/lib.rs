@@ -1,6 +1,6 @@
 //! Search for the faults that do most harm unnoticed, over kinds, sizes, times, channels and pairs.
 //!
-//! A search has a [space](space::SearchSpace), derived from the catalogue or read from a file, and a
+//! A search has a [space](space::Space), derived from the catalogue or read from a file, and a
 //! [bench](bench::SearchBench), the scenario without faults and its run. Each [candidate] is run on the
 //! instrument and the noise of that run, so that every difference is its effect. The [guide] chooses
 //! candidates by the results before; [`latin`](latin::latin) draws them all at once, for comparison. The

@@ -1,10 +1,10 @@
 //! The smallest form of the worst fault: as few faults as it takes, and as few digits.
 
 use crate::bench::SearchBench;
-use crate::candidate::FaultCandidate;
-use crate::error::FaultSearchError;
-use crate::space::{FaultForm, SearchSpace};
-use crate::trial::FaultTrial;
+use crate::candidate::Candidate;
+use crate::error::SearchError;
+use crate::space::{Form, Space};
+use crate::trial::Trial;
 use octant_base::control::Control;
 
 /// Harm of the smaller fault, at least, as a share of the harm of the one that was found.
@@ -14,9 +14,9 @@ const HARM_KEPT: f64 = 0.8;
 #[derive(Clone, Debug)]
 pub struct MinimalFault {
     /// Its trial.
-    pub trial: FaultTrial,
+    pub trial: Trial,
     /// The space in which its candidate is written: with fewer digits than that of the search.
-    pub space: SearchSpace,
+    pub space: Space,
     /// Runs that it took.
     pub runs: usize,
 }
@@ -28,15 +28,15 @@ pub struct MinimalFault {
 /// If a run fails, or the end was asked for.
 pub fn minimal(
     bench: &SearchBench,
-    space: &SearchSpace,
-    found: &FaultTrial,
+    space: &Space,
+    found: &Trial,
     control: &Control,
-) -> Result<MinimalFault, FaultSearchError> {
+) -> Result<MinimalFault, SearchError> {
     let least = (HARM_KEPT * found.unnoticed_harm().unwrap_or(0.0)).max(1.0);
     let mut smallest = MinimalFault { trial: found.clone(), space: space.clone(), runs: 0 };
     if found.candidate.faults.len() > 1 {
         let alone =
-            |fault: &crate::candidate::PlacedFault| FaultCandidate { faults: vec![fault.clone()] };
+            |fault: &crate::candidate::PlacedFault| Candidate { faults: vec![fault.clone()] };
         let singles = found.candidate.faults.iter().map(alone).collect();
         smallest.runs += found.candidate.faults.len();
         let tried = bench.run(space, singles, control)?;
@@ -45,10 +45,10 @@ pub fn minimal(
         }
     }
     // Each fault gets a form of its own, so that fewer digits for one don't change the other.
-    let forms: Vec<FaultForm> = (smallest.trial.candidate.faults.iter())
+    let forms: Vec<Form> = (smallest.trial.candidate.faults.iter())
         .map(|fault| space.forms[fault.form].clone())
         .collect();
-    smallest.space = SearchSpace { forms };
+    smallest.space = Space { forms };
     for (form, fault) in smallest.trial.candidate.faults.iter_mut().enumerate() {
         fault.form = form;
     }
@@ -75,7 +75,7 @@ fn with_digits(
     digits: i32,
     least: f64,
     control: &Control,
-) -> Result<Option<FaultTrial>, FaultSearchError> {
+) -> Result<Option<Trial>, SearchError> {
     let candidate = smallest.trial.candidate.clone();
     let mut space = smallest.space.clone();
     let Some(range) = space.forms[form].keys[key].values.range_mut() else { return Ok(None) };
@@ -95,6 +95,6 @@ fn with_digits(
     Ok(kept)
 }
 
-fn is_kept(trial: &FaultTrial, least: f64) -> bool {
+fn is_kept(trial: &Trial, least: f64) -> bool {
     trial.unnoticed_harm().is_some_and(|harm| harm >= least)
 }

@@ -2,8 +2,8 @@
 
 use crate::earlier::EarlierFound;
 use crate::found::{FoundFault, SearchFound, effect_words};
-use crate::space::SearchSpace;
-use crate::trial::FaultTrial;
+use crate::space::Space;
+use crate::trial::Trial;
 use maud::{Markup, html};
 use octant_base::number::{counted, fixed, significant};
 use octant_report::page::page;
@@ -18,12 +18,7 @@ const TOP: f64 = 34.0;
 
 /// Renders a search as one HTML file. `rerun` is the command line that repeats it.
 #[must_use]
-pub fn render(
-    found: &SearchFound,
-    trials: &[FaultTrial],
-    space: &SearchSpace,
-    rerun: &str,
-) -> String {
+pub fn render(found: &SearchFound, trials: &[Trial], space: &Space, rerun: &str) -> String {
     let body = html! {
         header {
             div.eyebrow { "Search for unnoticed faults" }
@@ -117,7 +112,7 @@ fn largest(found: &SearchFound) -> Markup {
 }
 
 /// Draws the harm of every run in a row for each kind.
-fn picture(trials: &[FaultTrial], space: &SearchSpace) -> Markup {
+fn picture(trials: &[Trial], space: &Space) -> Markup {
     let mut rows: BTreeMap<String, Vec<(f64, bool)>> = BTreeMap::new();
     for trial in trials {
         let Some(effect) = trial.effect().filter(|effect| effect.fired) else { continue };

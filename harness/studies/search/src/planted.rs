@@ -7,10 +7,10 @@
 use crate::bench::SearchBench;
 use crate::derived::{RunTimes, derived};
 use crate::earlier::EarlierSearch;
-use crate::error::FaultSearchError;
-use crate::search::{SearchPlan, SearchStrategy, search};
-use crate::space::SearchSpace;
-use crate::trial::FaultTrial;
+use crate::error::SearchError;
+use crate::search::{SearchPlan, Strategy, search};
+use crate::space::Space;
+use crate::trial::Trial;
 use octant_base::control::Control;
 use octant_base::pool::processors;
 use octant_faults::kinds;
@@ -91,15 +91,11 @@ fn bench(changes: &[&str]) -> SearchBench {
 }
 
 /// Number of the first run with a fault that the weakness alone lets through.
-fn first_found(
-    [weak, full]: [&SearchBench; 2],
-    space: &SearchSpace,
-    plan: &SearchPlan,
-) -> Option<usize> {
+fn first_found([weak, full]: [&SearchBench; 2], space: &Space, plan: &SearchPlan) -> Option<usize> {
     let control = Control::default();
     let (mut seen, mut runs) = (0, 0);
     let mut found = None;
-    let mut tell = |trials: &[FaultTrial]| {
+    let mut tell = |trials: &[Trial]| {
         for trial in &trials[seen..] {
             runs += usize::from(trial.is_run());
             if found.is_some() || trial.unnoticed_harm().is_none_or(|harm| harm < 1.0) {
@@ -115,15 +111,15 @@ fn first_found(
         seen = trials.len();
     };
     let ended = search(weak, space, plan, None, &control, &mut tell);
-    assert!(matches!(ended, Ok(_) | Err(FaultSearchError::Cancelled)));
+    assert!(matches!(ended, Ok(_) | Err(SearchError::Cancelled)));
     found
 }
 
 /// Runs to the first find of each seed, in order; those that found nothing last.
 fn finds(
     benches: [&SearchBench; 2],
-    space: &SearchSpace,
-    strategy: SearchStrategy,
+    space: &Space,
+    strategy: Strategy,
     runs: usize,
     after: &[EarlierSearch],
 ) -> Vec<Option<usize>> {
@@ -138,8 +134,8 @@ fn finds(
 }
 
 /// A search of the core with all of its screens.
-fn earlier(full: &SearchBench, space: &SearchSpace, seed: u64) -> EarlierSearch {
-    let strategy = SearchStrategy::Guided;
+fn earlier(full: &SearchBench, space: &Space, seed: u64) -> EarlierSearch {
+    let strategy = Strategy::Guided;
     let plan =
         SearchPlan { strategy, runs: EARLIER_RUNS, seed, pairs: 0.0, enough: None, after: None };
     let trials = search(full, space, &plan, None, &Control::default(), &mut |_| {}).unwrap();
@@ -162,9 +158,9 @@ fn table() {
     let (mut found_of, mut tenths) = ([0, 0, 0], 0);
     for (name, changes) in WEAKNESSES {
         let weak = bench(changes);
-        let latin = finds([&weak, &full], &space, SearchStrategy::Latin, LATIN_RUNS, &[]);
-        let guided = finds([&weak, &full], &space, SearchStrategy::Guided, GUIDED_RUNS, &[]);
-        let after = finds([&weak, &full], &space, SearchStrategy::Guided, GUIDED_RUNS, &earlier);
+        let latin = finds([&weak, &full], &space, Strategy::Latin, LATIN_RUNS, &[]);
+        let guided = finds([&weak, &full], &space, Strategy::Guided, GUIDED_RUNS, &[]);
+        let after = finds([&weak, &full], &space, Strategy::Guided, GUIDED_RUNS, &earlier);
         let columns = [(&latin, LATIN_RUNS), (&guided, GUIDED_RUNS), (&after, GUIDED_RUNS)];
         let columns = columns.map(|(all, runs)| words(all, runs));
         println!("| {name} | {} |", columns.join(" | "));

@@ -1,14 +1,14 @@
 //! The loop of a search: candidates, their runs, the journal.
 
 use crate::bench::SearchBench;
-use crate::candidate::FaultCandidate;
+use crate::candidate::Candidate;
 use crate::earlier::{EarlierScreens, EarlierSearch};
-use crate::error::FaultSearchError;
-use crate::guide::SearchGuide;
-use crate::journal::{JOURNAL_SCHEMA, SearchIdentity, SearchJournal, hash_of};
+use crate::error::SearchError;
+use crate::guide::Guide;
+use crate::journal::{Identity, JOURNAL_SCHEMA, Journal, hash_of};
 use crate::latin::latin;
-use crate::space::SearchSpace;
-use crate::trial::FaultTrial;
+use crate::space::Space;
+use crate::trial::Trial;
 use octant_base::control::Control;
 use octant_score::numerics;
 use std::path::Path;
@@ -19,14 +19,14 @@ const PROPOSED: usize = 16;
 
 /// Way in which candidates are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SearchStrategy {
+pub enum Strategy {
     /// By the results before.
     Guided,
     /// A Latin hypercube, for comparison.
     Latin,
 }
 
-impl SearchStrategy {
+impl Strategy {
     /// Name for the user.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -41,7 +41,7 @@ impl SearchStrategy {
 #[derive(Clone, Debug)]
 pub struct SearchPlan {
     /// The strategy.
-    pub strategy: SearchStrategy,
+    pub strategy: Strategy,
     /// Runs with faults, at least: the last candidates that are proposed together are run to their end.
     pub runs: usize,
     /// Seed of the candidates.
@@ -60,28 +60,28 @@ pub struct SearchPlan {
 /// If it can't run, or if the end was asked for; the journal stays.
 pub fn search(
     bench: &SearchBench,
-    space: &SearchSpace,
+    space: &Space,
     plan: &SearchPlan,
     journal: Option<&Path>,
     control: &Control,
-    tell: &mut dyn FnMut(&[FaultTrial]),
-) -> Result<Vec<FaultTrial>, FaultSearchError> {
+    tell: &mut dyn FnMut(&[Trial]),
+) -> Result<Vec<Trial>, SearchError> {
     let mut journal =
-        journal.map(|path| SearchJournal::open(path, &identity(bench, space, plan))).transpose()?;
+        journal.map(|path| Journal::open(path, &identity(bench, space, plan))).transpose()?;
     let mut proposer = match plan.strategy {
-        SearchStrategy::Guided => {
+        Strategy::Guided => {
             let earlier = plan.after.as_ref();
             let screens = earlier.map(|earlier| EarlierScreens::of(&earlier.trials, space));
-            let guide = SearchGuide::new(space, plan.seed, plan.pairs);
+            let guide = Guide::new(space, plan.seed, plan.pairs);
             Proposer::Guided(guide.after(screens.unwrap_or_default()))
         }
-        SearchStrategy::Latin => {
+        Strategy::Latin => {
             let mut all = latin(space, plan.seed, plan.pairs, plan.runs);
             all.reverse();
             Proposer::Listed(all)
         }
     };
-    let mut trials: Vec<FaultTrial> = Vec::new();
+    let mut trials: Vec<Trial> = Vec::new();
     let (mut runs, mut proposed) = (0, 0);
     // Candidates that the scenario can't have cost no run, and don't go on forever.
     while runs < plan.runs && proposed < 20 * plan.runs.max(PROPOSED) {
@@ -90,7 +90,7 @@ pub fn search(
             break;
         }
         if control.cancel.load(Ordering::Relaxed) {
-            return Err(FaultSearchError::Cancelled);
+            return Err(SearchError::Cancelled);
         }
         let known = journal.as_mut().map(|journal| journal.take(&candidates)).transpose()?;
         let results = match known.flatten() {
@@ -108,7 +108,7 @@ pub fn search(
         runs += results.iter().filter(|trial| trial.is_run()).count();
         trials.extend(results);
         tell(&trials);
-        let worst = trials.iter().filter_map(FaultTrial::unnoticed_harm).fold(0.0, f64::max);
+        let worst = trials.iter().filter_map(Trial::unnoticed_harm).fold(0.0, f64::max);
         if plan.enough.is_some_and(|enough| worst >= enough) {
             break;
         }
@@ -117,13 +117,13 @@ pub fn search(
 }
 
 enum Proposer<'a> {
-    Guided(SearchGuide<'a>),
+    Guided(Guide<'a>),
     /// Candidates, the first last.
-    Listed(Vec<FaultCandidate>),
+    Listed(Vec<Candidate>),
 }
 
 impl Proposer<'_> {
-    fn propose(&mut self, count: usize) -> Vec<FaultCandidate> {
+    fn propose(&mut self, count: usize) -> Vec<Candidate> {
         match self {
             Self::Guided(guide) => guide.propose(count),
             Self::Listed(all) => {
@@ -132,23 +132,23 @@ impl Proposer<'_> {
         }
     }
 
-    fn learn(&mut self, results: &[FaultTrial]) {
+    fn learn(&mut self, results: &[Trial]) {
         if let Self::Guided(guide) = self {
             guide.learn(results);
         }
     }
 }
 
-fn identity(bench: &SearchBench, space: &SearchSpace, plan: &SearchPlan) -> SearchIdentity {
+fn identity(bench: &SearchBench, space: &Space, plan: &SearchPlan) -> Identity {
     let strategy = match plan.strategy {
-        SearchStrategy::Guided => {
+        Strategy::Guided => {
             let after = plan.after.as_ref();
             let after = after.map(|after| format!(", after {}", after.journal_blake3));
             format!("guided, pairs {}{}", plan.pairs, after.unwrap_or_default())
         }
-        SearchStrategy::Latin => format!("latin, pairs {}, runs {}", plan.pairs, plan.runs),
+        Strategy::Latin => format!("latin, pairs {}, runs {}", plan.pairs, plan.runs),
     };
-    SearchIdentity {
+    Identity {
         schema: JOURNAL_SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
         numerics: numerics::NUMERICS,

@@ -5,21 +5,21 @@ use octant_faults::catalogue::FaultKind;
 
 /// Faults among which a search looks.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SearchSpace {
+pub struct Space {
     /// Forms of faults; never empty.
-    pub forms: Vec<FaultForm>,
+    pub forms: Vec<Form>,
 }
 
 /// A form of fault: a kind, and the values of its keys.
 #[derive(Clone, Debug)]
-pub struct FaultForm {
+pub struct Form {
     /// The kind.
     pub kind: &'static FaultKind,
     /// Its keys, in the order in which they are written.
     pub keys: Vec<FormKey>,
 }
 
-impl PartialEq for FaultForm {
+impl PartialEq for Form {
     fn eq(&self, other: &Self) -> bool {
         self.kind.name == other.kind.name && self.keys == other.keys
     }
@@ -180,7 +180,7 @@ fn index(place: f64, count: usize) -> usize {
     ((place * count as f64) as usize).min(count - 1)
 }
 
-impl FaultForm {
+impl Form {
     /// Index of the key that makes the fault larger or smaller: the first range on a logarithmic scale other
     /// than a time, else the duration.
     #[must_use]

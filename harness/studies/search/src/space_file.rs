@@ -1,7 +1,7 @@
 //! The space of a search as a file.
 
 use crate::derived::{RunTimes, divided};
-use crate::space::{FaultForm, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, SearchSpace};
+use crate::space::{Form, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, Space};
 use crate::toml_text::written;
 use octant_base::names::suggestion;
 use octant_faults::kinds;
@@ -55,7 +55,7 @@ type Wrong = (String, String);
 /// # Errors
 /// If the file can't be read, isn't TOML, or has a field that isn't expected; the values of the keys are checked
 /// against the scenario when the search begins.
-pub fn read(path: &Path, times: RunTimes) -> Result<SearchSpace, SpaceError> {
+pub fn read(path: &Path, times: RunTimes) -> Result<Space, SpaceError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path)
         .map_err(|source| SpaceError::Read { file: file.clone(), source })?;
@@ -65,7 +65,7 @@ pub fn read(path: &Path, times: RunTimes) -> Result<SearchSpace, SpaceError> {
     space(&table, times).map_err(|(field, problem)| SpaceError::Field { file, field, problem })
 }
 
-fn space(table: &Table, times: RunTimes) -> Result<SearchSpace, Wrong> {
+fn space(table: &Table, times: RunTimes) -> Result<Space, Wrong> {
     let wrong = |field: &str, problem: String| (field.to_owned(), problem);
     match table.get("schema").and_then(Value::as_integer) {
         Some(SPACE_SCHEMA) => {}
@@ -86,10 +86,10 @@ fn space(table: &Table, times: RunTimes) -> Result<SearchSpace, Wrong> {
     let faults =
         faults.ok_or_else(|| wrong("faults", "expected one [[faults]] or more".to_owned()))?;
     let forms = faults.iter().enumerate().map(|(place, fault)| form(place, fault, times));
-    Ok(SearchSpace { forms: forms.collect::<Result<_, _>>()? })
+    Ok(Space { forms: forms.collect::<Result<_, _>>()? })
 }
 
-fn form(place: usize, fault: &Value, times: RunTimes) -> Result<FaultForm, Wrong> {
+fn form(place: usize, fault: &Value, times: RunTimes) -> Result<Form, Wrong> {
     let field = |key: &str| format!("faults[{}].{key}", place + 1);
     let table = fault.as_table().ok_or_else(|| (field(""), "expected a table".to_owned()))?;
     let name = table.get("kind").and_then(Value::as_str);
@@ -115,7 +115,7 @@ fn form(place: usize, fault: &Value, times: RunTimes) -> Result<FaultForm, Wrong
     // In the order of the kind's parameters, so that the first range is the size of the fault.
     let order = |key: &FormKey| kind.parameters.iter().position(|p| p.name == key.name);
     keys.sort_by_key(|key| order(key).unwrap_or(usize::MAX));
-    Ok(FaultForm { kind, keys })
+    Ok(Form { kind, keys })
 }
 
 fn values(key: &str, value: &Value, times: RunTimes) -> Result<KeyValues, String> {
@@ -215,7 +215,7 @@ fn factor(unit: &str) -> f64 {
 
 /// Writes a space as a file, which [`read`] reads.
 #[must_use]
-pub fn to_toml(space: &SearchSpace) -> String {
+pub fn to_toml(space: &Space) -> String {
     let mut out = format!("schema = {SPACE_SCHEMA}\n");
     for form in &space.forms {
         out += &format!("\n[[faults]]\nkind = {:?}\n", form.kind.name);

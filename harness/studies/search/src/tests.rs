@@ -1,16 +1,16 @@
 //! Searches on a short run at a low rate.
 
 use crate::bench::SearchBench;
-use crate::candidate::{FaultCandidate, PlacedFault};
+use crate::candidate::{Candidate, PlacedFault};
 use crate::derived::{RunTimes, derived, searchable};
 use crate::earlier::{EarlierFound, EarlierSearch, ScreenFound};
-use crate::error::FaultSearchError;
+use crate::error::SearchError;
 use crate::found::{SearchFound, worst};
 use crate::minimal::minimal;
-use crate::search::{SearchPlan, SearchStrategy, search};
-use crate::space::{FormKey, SearchSpace};
+use crate::search::{SearchPlan, Strategy, search};
+use crate::space::{FormKey, Space};
 use crate::space_file::{SpaceError, read, to_toml};
-use crate::trial::{FaultTrial, TrialResult};
+use crate::trial::{Trial, TrialResult};
 use octant_base::chained_lines::ChainedLines;
 use octant_base::control::Control;
 use octant_faults::kinds;
@@ -30,23 +30,16 @@ fn bench(jobs: usize) -> SearchBench {
     SearchBench::new(&scenario(&[]), 1, jobs, &Control::default()).unwrap()
 }
 
-fn space(names: &[&str]) -> SearchSpace {
+fn space(names: &[&str]) -> Space {
     let all: Vec<_> = names.iter().map(|name| kinds::named(name).unwrap()).collect();
     derived(&all, TIMES)
 }
 
 fn plan(runs: usize) -> SearchPlan {
-    SearchPlan {
-        strategy: SearchStrategy::Guided,
-        runs,
-        seed: 1,
-        pairs: 0.3,
-        enough: None,
-        after: None,
-    }
+    SearchPlan { strategy: Strategy::Guided, runs, seed: 1, pairs: 0.3, enough: None, after: None }
 }
 
-fn searched(bench: &SearchBench, runs: usize, journal: Option<&Path>) -> Vec<FaultTrial> {
+fn searched(bench: &SearchBench, runs: usize, journal: Option<&Path>) -> Vec<Trial> {
     let space = space(&["bias-step", "spike", "scale-step"]);
     search(bench, &space, &plan(runs), journal, &Control::default(), &mut |_| {}).unwrap()
 }
@@ -77,7 +70,7 @@ fn a_journal_of_another_search_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let journal = folder.path().join("search.jsonl");
     let bench = bench(2);
-    let tried = |space: &SearchSpace, plan: &SearchPlan| {
+    let tried = |space: &Space, plan: &SearchPlan| {
         search(&bench, space, plan, Some(&journal), &Control::default(), &mut |_| {})
             .map(|trials| trials.len())
             .map_err(|error| error.to_string())
@@ -123,7 +116,7 @@ fn after_an_earlier_search_the_screen_that_changed_is_found_first() {
     let earlier = EarlierSearch::read(&journal("first"), &space).unwrap();
     assert_eq!(earlier.trials, trials);
     let after = SearchPlan { after: Some(earlier.clone()), seed: 5, pairs: 0.0, ..plan(24) };
-    let found = |trials: &[FaultTrial]| {
+    let found = |trials: &[Trial]| {
         let found = EarlierFound::of(&earlier, trials);
         let counts = |screen: &ScreenFound| (screen.report.clone(), screen.again, screen.otherwise);
         found.screens.iter().map(counts).collect::<Vec<_>>()
@@ -133,7 +126,7 @@ fn after_an_earlier_search_the_screen_that_changed_is_found_first() {
     let missed = EarlierFound::of(&earlier, &trials);
     assert!(missed.missed > 0 && missed.missed_again > 0, "{missed:?}");
     assert!(missed.still_missed > 0 && !missed.is_too_short(), "{missed:?}");
-    let harm = |trial: Option<&FaultTrial>| trial.and_then(FaultTrial::unnoticed_harm);
+    let harm = |trial: Option<&Trial>| trial.and_then(Trial::unnoticed_harm);
     assert_eq!(harm(worst(&earlier.trials)), harm(trials.first()));
     let same = found(&trials);
     assert!(same.len() >= 3 && same.iter().all(|(_, _, otherwise)| *otherwise == 0), "{same:?}");
@@ -168,8 +161,8 @@ fn after_a_repair_all_that_was_missed_is_run_again() {
     let blind = scenario(&["screening.drift=\"off\""]);
     let blind = SearchBench::new(&blind, 1, 2, &Control::default()).unwrap();
     let trials = searched(&blind, &SearchPlan { pairs: 0.0, ..plan(80) });
-    let missed = |trial: &&FaultTrial| trial.unnoticed_harm().is_some_and(|harm| harm >= 1.0);
-    let all: Vec<&FaultTrial> = trials.iter().filter(missed).collect();
+    let missed = |trial: &&Trial| trial.unnoticed_harm().is_some_and(|harm| harm >= 1.0);
+    let all: Vec<&Trial> = trials.iter().filter(missed).collect();
     // The repaired core has the drift test, and notices most of them.
     let repaired = bench(2);
     let noticed = repaired.run(
@@ -177,12 +170,11 @@ fn after_a_repair_all_that_was_missed_is_run_again() {
         all.iter().map(|trial| trial.candidate.clone()).collect(),
         &Control::default(),
     );
-    let noticed: Vec<FaultTrial> =
+    let noticed: Vec<Trial> =
         noticed.unwrap().into_iter().filter(|trial| !missed(&trial)).collect();
     assert!(noticed.len() > 6, "{} of {}", noticed.len(), all.len());
-    let known =
-        |trial: &&FaultTrial| noticed.iter().any(|other| other.candidate == trial.candidate);
-    let trials: Vec<FaultTrial> = trials.iter().filter(known).cloned().collect();
+    let known = |trial: &&Trial| noticed.iter().any(|other| other.candidate == trial.candidate);
+    let trials: Vec<Trial> = trials.iter().filter(known).cloned().collect();
     let earlier = EarlierSearch { trials, journal_blake3: String::new() };
     let after = |runs| {
         let plan = SearchPlan { after: Some(earlier.clone()), pairs: 0.0, ..plan(runs) };
@@ -199,7 +191,7 @@ fn after_a_repair_all_that_was_missed_is_run_again() {
 fn what_is_no_earlier_search_of_the_space_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let journal = folder.path().join("search.jsonl");
-    let told = |space: &SearchSpace| EarlierSearch::read(&journal, space).unwrap_err().to_string();
+    let told = |space: &Space| EarlierSearch::read(&journal, space).unwrap_err().to_string();
     let bias = space(&["bias-step"]);
     assert!(told(&bias).starts_with("read "), "{}", told(&bias));
     let control = Control::default();
@@ -221,8 +213,8 @@ fn what_is_no_earlier_search_of_the_space_is_refused() {
     let far = vec![0.5, 0.5, 0.5, f64::MAX];
     for faults in [vec![], fault(7, vec![0.5; 4]), fault(0, vec![0.5]), fault(0, far)] {
         std::fs::write(&journal, first).unwrap();
-        let candidate = FaultCandidate { faults };
-        let trial = FaultTrial { candidate, result: TrialResult::Broken(String::new()) };
+        let candidate = Candidate { faults };
+        let trial = Trial { candidate, result: TrialResult::Broken(String::new()) };
         let mut lines = ChainedLines::open(&journal, "", |_| Ok(()), |_| Ok(())).unwrap();
         lines.append([serde_json::to_string(&trial).unwrap()]).unwrap();
         assert!(told(&bias).contains("isn't in the space"), "{}", told(&bias));
@@ -252,7 +244,7 @@ fn a_pair_is_made_a_single_fault_that_runs_again() {
     let gyros = [("channels", 0.9), ("error", 93.8), ("onset", 537.66), ("duration", 12.6)];
     let noise = [("onset", 1200.0), ("gain", 300.0), ("duration", 1.0)];
     let faults = vec![placed("asymmetry", &gyros), placed("noise-gain", &noise)];
-    let tried = bench.run(&space, vec![FaultCandidate { faults }], &Control::default()).unwrap();
+    let tried = bench.run(&space, vec![Candidate { faults }], &Control::default()).unwrap();
     let found = tried.into_iter().next().unwrap();
     let harm = found.unnoticed_harm().unwrap_or_else(|| panic!("{found:?}"));
     assert!(harm >= 1.0, "{harm}");
@@ -286,7 +278,7 @@ fn every_kind_that_acts_on_samples_has_a_form_or_a_reason() {
     assert_eq!(bench.impossible(&again), None);
     assert_eq!(again.forms.len(), space.forms.len());
     for (a, b) in again.forms.iter().zip(&space.forms) {
-        let ends = |form: &crate::space::FaultForm, at: f64| {
+        let ends = |form: &crate::space::Form, at: f64| {
             let mut lines: Vec<String> = form.keys.iter().map(|key| key.line(at)).collect();
             lines.sort();
             lines
@@ -362,9 +354,9 @@ fn a_scenario_that_gives_no_reference_is_refused() {
                  trigger = { at = \"5 s\" }\nduration = \"1 samples\"\n";
     let text = format!("{SHORT}{fault}");
     let faulty = Scenario::parse(&text, "short.toml", Path::new("."), &[]).unwrap();
-    assert!(matches!(tried(&faulty), FaultSearchError::HasFaults(1)));
+    assert!(matches!(tried(&faulty), SearchError::HasFaults(1)));
     control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(matches!(tried(&scenario(&[])), FaultSearchError::Cancelled));
+    assert!(matches!(tried(&scenario(&[])), SearchError::Cancelled));
 }
 
 #[test]
@@ -384,7 +376,7 @@ fn counts_of_a_result_add_up() {
     // Each parameter's largest shift is that of one of the trials, and none is larger.
     for (parameter, shift) in &found.largest_unnoticed {
         let largest =
-            trials.iter().filter_map(FaultTrial::effect).filter(|effect| effect.is_unnoticed());
+            trials.iter().filter_map(Trial::effect).filter(|effect| effect.is_unnoticed());
         let largest = largest.filter_map(|effect| effect.shifts_sigma.get(parameter));
         assert_eq!(largest.map(|sigma| sigma.abs()).fold(0.0, f64::max), shift.sigma.abs());
     }

@@ -1,6 +1,6 @@
 //! What a candidate did.
 
-use crate::candidate::FaultCandidate;
+use crate::candidate::Candidate;
 use octant_faults::Receipt;
 use octant_faults::catalogue::{Acts, Family};
 use octant_faults::kinds;
@@ -13,9 +13,9 @@ use std::collections::BTreeMap;
 
 /// A candidate with its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FaultTrial {
+pub struct Trial {
     /// The candidate.
-    pub candidate: FaultCandidate,
+    pub candidate: Candidate,
     /// Its result.
     pub result: TrialResult,
 }
@@ -141,7 +141,7 @@ fn finite(number: f64) -> f64 {
     if number.is_finite() { number } else { f64::MAX }
 }
 
-impl FaultTrial {
+impl Trial {
     /// Effect of a candidate that ran.
     #[must_use]
     pub fn effect(&self) -> Option<&TrialEffect> {

@@ -23,6 +23,7 @@
 //! | [`serial`] | serial ports and pseudo terminals |
 //! | [`arrow`] | units of columns, in the metadata of Parquet files |
 //! | [`utc`] | times of the host as text |
+//! | [`whole_file`] | files that are written in one piece |
 
 pub mod address;
 pub mod arrow;
@@ -46,3 +47,4 @@ pub mod printable;
 pub mod regular;
 pub mod serial;
 pub mod utc;
+pub mod whole_file;

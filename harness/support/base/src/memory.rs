@@ -95,6 +95,6 @@ fn end(parts: &[&str]) {
 #[cfg(not(unix))]
 fn end(_: &[&str]) {}
 
-/// Exit status of a broken bench, that of `octant_requirements::Verdict::Error`.
+/// Exit status of a broken bench, that of `octant_verdict::Verdict::Error`.
 #[cfg(unix)]
 const STATUS: i32 = 4;

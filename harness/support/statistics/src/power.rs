@@ -2,10 +2,10 @@
 //!
 //! A result of no change is meaningful only together with it.
 
+use crate::deviation::student;
 use crate::draw::unit;
 use crate::normal;
 use crate::sample::ranks;
-use crate::student::student;
 use statrs::distribution::{Beta, ChiSquared, ContinuousCDF};
 
 /// Power for which reports state the smallest change.

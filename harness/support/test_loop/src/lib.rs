@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use octant_calibration::positions::EIGHT;
-//! use octant_test_loop::closed_loop::ClosedLoop;
+//! use octant_test_loop::plant_and_core::ClosedLoop;
 //! use octant_test_loop::instrument::InstrumentCase;
 //!
 //! let mut run = ClosedLoop::of(&InstrumentCase::table_1(1, EIGHT));
@@ -14,7 +14,7 @@
 //! ```
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-pub mod closed_loop;
 pub mod draws;
 pub mod instrument;
+pub mod plant_and_core;
 pub mod squares;

@@ -1,6 +1,6 @@
 //! Squares of the attitude's error at the end of a calibration, in what the filter says of it.
 
-use crate::closed_loop::ClosedLoop;
+use crate::plant_and_core::ClosedLoop;
 use nalgebra::{Matrix2, Quaternion, UnitQuaternion, Vector2};
 use octant_calibration::Core;
 use octant_calibration::covariance::PHI;

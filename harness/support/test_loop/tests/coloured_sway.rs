@@ -10,8 +10,8 @@ use octant_plant::config::Sinusoid;
 use octant_plant::draw::phases;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Health, Mode};
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::instrument::{InstrumentCase, base_of};
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, assert_consistent};
 
 /// 20 Hz: what a sway of seconds needs.

@@ -12,8 +12,8 @@ use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_sample::parameters::ParameterGroup;
 use octant_sample::{Health, Mode, Parameters, Reference, Status};
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::instrument::{InstrumentCase, LATITUDE_RAD, PERIOD_NS, dockside};
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 
 const SECOND: u64 = 1_000_000_000 / PERIOD_NS;
 

@@ -9,8 +9,8 @@ use octant_plant::config as plant;
 use octant_plant::motion::dockside_default;
 use octant_sample::parameters::ParameterGroup;
 use octant_sample::{Mode, Parameters};
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::instrument::{InstrumentCase, dockside};
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, assert_consistent};
 
 /// Sets the given attitude and velocity to the truth at time 0, with the error that the case draws.

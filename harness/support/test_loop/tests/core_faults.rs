@@ -10,8 +10,8 @@ use octant_calibration::positions::EIGHT;
 use octant_earth::units::*;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Health, Sample};
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::instrument::InstrumentCase;
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 
 /// Sample in the dwell at (0, 90), which lasts from 4797 to 5475 s.
 const DWELL: u64 = 5050 * 200;

@@ -17,9 +17,9 @@ use octant_sample::{Mode, Sample};
 use octant_scenario::{Method, Scenario};
 use octant_smoother::constancy::{self, NODES_MAX};
 use octant_smoother::history::FilterHistory;
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::draws::draws;
 use octant_test_loop::instrument::{InstrumentCase, dockside};
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use std::collections::BTreeMap;
 use std::path::Path;
 

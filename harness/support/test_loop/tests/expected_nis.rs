@@ -6,9 +6,9 @@ use octant_earth::units::MICRO_G;
 use octant_random::stream::Triad;
 use octant_sample::Mode;
 use octant_sample::further::FurtherGroup;
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::draws::draws;
 use octant_test_loop::instrument::InstrumentCase;
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 
 /// σ of the anomaly that the filter considers, m/s².
 const SIGMA_MPS2: f64 = 50.0 * MICRO_G;

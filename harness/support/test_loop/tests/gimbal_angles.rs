@@ -10,9 +10,9 @@ use octant_plant::draw::{Draw, ParameterDraws, further as drawn, parameters};
 use octant_sample::counts::GIMBAL_LSB_RAD;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use octant_sample::{Health, Mode};
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::draws::draws;
 use octant_test_loop::instrument::InstrumentCase;
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, assert_consistent};
 
 /// 50 Hz: a move's second of acceleration is fifty samples.

@@ -6,8 +6,8 @@ use octant_calibration::state_machine::CalibrationRefusal;
 use octant_earth::units::*;
 use octant_sample::Mode;
 use octant_sample::counts::GIMBAL_LSB_RAD;
-use octant_test_loop::closed_loop::ClosedLoop;
 use octant_test_loop::instrument::InstrumentCase;
+use octant_test_loop::plant_and_core::ClosedLoop;
 
 const HZ: u64 = 50;
 const SECONDS: u64 = 3600;

@@ -9,8 +9,8 @@ use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_sample::canonical;
 use octant_sample::{Aiding, Mode, Output, Reference, Sample, Status};
-use octant_test_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_test_loop::instrument::{InstrumentCase, PERIOD_NS, dockside};
+use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use std::time::Instant;
 
 /// Eight minutes of calibration, and four of navigation.

@@ -5,10 +5,10 @@ use super::convert::WireUnit;
 use super::faults::in_unit_of;
 use octant_base::names::suggestion;
 use octant_faults::catalogue::Takes;
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Comparison, Verdict};
 use octant_scenario::{Given, Problem, ScenarioError, SystemRequirement};
 use octant_score::verdict::RequirementResult;
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{Comparison, Verdict};
 
 /// Beginning of every measure.
 const START: &str = "signal.";

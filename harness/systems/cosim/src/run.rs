@@ -24,11 +24,11 @@ use octant_fmu_bind::settings::Starts;
 use octant_fmu_host::instance::{Instance, ProcessPlace};
 use octant_fmu_host::{OpenedFmu, description::Description};
 use octant_recorder::Event;
-use octant_requirements::Verdict;
 use octant_scenario::{ScenarioError, connection_faults, system_requirements, text_of};
 use octant_score::judge::NO_REQUIREMENT;
 use octant_score::summary::{FaultResult, results};
 use octant_score::verdict::RequirementResult;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 /// Maximum number of rows of a recording, where the interval isn't given.

@@ -4,9 +4,9 @@
 
 use super::initialize::Loop;
 use super::tuning::TunedResult;
-use octant_requirements::Verdict;
 use octant_score::summary::FaultResult;
 use octant_score::verdict::RequirementResult;
+use octant_verdict::Verdict;
 use serde::Serialize;
 
 /// Version of the form of this summary.

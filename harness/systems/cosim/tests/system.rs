@@ -9,7 +9,6 @@ use octant_fmu_build::{Options, build};
 use octant_fmu_host::description::{Description, read_bytes};
 use octant_fmu_host::instance::ProcessPlace;
 use octant_recorder::StreamHash;
-use octant_requirements::Verdict;
 use octant_run::{StreamKeeping, run_method};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{
@@ -17,6 +16,7 @@ use octant_sample::{
     Reference, Sample, Status,
 };
 use octant_scenario::{Method, Scenario};
+use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

@@ -4,8 +4,8 @@ use super::system::{built, request, with_arrays};
 use octant_base::control::Control;
 use octant_cosim::run::{PreparedSystem, Request};
 use octant_cosim::summary::{SystemEnded, SystemSummary};
-use octant_requirements::Verdict;
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
+use octant_verdict::Verdict;
 use std::path::Path;
 
 /// Inputs of the calibrator at each step, as bits, and the summary.

@@ -5,7 +5,7 @@ use super::judgement::{judge, judge_sigmas};
 use super::{CalibrationRefusal, Core, kalman_of, prior_after_alignment, strapdown_at};
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
-use crate::config::{Estimator, SigmaLimits, Site};
+use crate::config::{Estimator, Site};
 use crate::covariance::{PARAMETERS, SolutionCovariance};
 use crate::filter::ExpectedNis;
 use crate::standstill::{AverageUncertainty, StandstillAverage};
@@ -81,7 +81,7 @@ impl Core {
             }
             let duration_s = ticks as f64 * self.sample_s;
             let prior = prior_after_alignment(&self.config, kalman);
-            let of_grade = SigmaLimits::attitude_of_grade(&self.config, &prior, duration_s);
+            let of_grade = self.config.attitude_of_grade(&prior, duration_s);
             judge_sigmas(filter, &kalman.sigma_limits, of_grade)?;
             return Ok(Quality { bridged, gimbal_slips, ..quality });
         }

@@ -65,7 +65,7 @@ fn answer(k: u64) -> Output {
 
 /// Record of a run.
 #[derive(Debug, PartialEq)]
-struct Told {
+struct RunRecord {
     /// Epochs of the source without the disturbances of the first fault and of those after it.
     without: Vec<Epoch>,
     /// Epochs delivered for each epoch of the source.
@@ -79,7 +79,7 @@ struct Told {
 }
 
 /// Faults with a manual trigger are fired at epoch 20.
-fn run(specs: &[FaultSpec]) -> Result<Told, (String, FaultBuildError)> {
+fn run(specs: &[FaultSpec]) -> Result<RunRecord, (String, FaultBuildError)> {
     let mut station = Station::new(specs, &setup())?;
     let mut log = Log { truth: Some(Truth::default()), ..Log::default() };
     let (mut delivered, mut commands) = (Vec::new(), Vec::new());
@@ -108,7 +108,7 @@ fn run(specs: &[FaultSpec]) -> Result<Told, (String, FaultBuildError)> {
         station.told();
     }
     let (begun, ended) = (log.begun.len(), log.ended.len());
-    Ok(Told {
+    Ok(RunRecord {
         without,
         delivered,
         commands,
@@ -154,7 +154,7 @@ fn refusal_is_fair(specs: &[FaultSpec], (id, error): &(String, FaultBuildError))
 }
 
 /// Checks the properties of a receipt that don't depend on the streams.
-fn receipt_is_sound(told: &Told, index: usize) {
+fn receipt_is_sound(told: &RunRecord, index: usize) {
     let receipt = &told.receipts[index];
     let onsets = told.occurrences.iter().filter(|it| it.fault == index && it.begins);
     let onsets: Vec<u64> = onsets.map(|it| it.epoch).collect();
@@ -171,7 +171,7 @@ fn receipt_is_sound(told: &Told, index: usize) {
 }
 
 /// Epochs in which the fault was active, fading included, and inside the plant until its effect was over.
-fn active(told: &Told) -> Vec<u64> {
+fn active(told: &RunRecord) -> Vec<u64> {
     let is = |k: u64| {
         let mut until = told.occurrences.iter().filter(|it| it.epoch <= k);
         until.next_back().is_some_and(|it| it.begins)
@@ -179,7 +179,7 @@ fn active(told: &Told) -> Vec<u64> {
     (1..=EPOCHS).filter(|k| is(*k)).collect()
 }
 
-fn one_fault_adds_up(spec: &FaultSpec, told: &Told) {
+fn one_fault_adds_up(spec: &FaultSpec, told: &RunRecord) {
     receipt_is_sound(told, 0);
     let receipt = &told.receipts[0];
     let first_onset = told.occurrences.first().map_or(u64::MAX, |it| it.epoch);
@@ -287,7 +287,7 @@ proptest! {
         // A second run has the same result, bit for bit (NaN as its bits).
         let again = run(&specs).unwrap();
         prop_assert_eq!(&again.receipts, &told.receipts);
-        let all = |told: &Told| told.delivered.iter().map(|out| bytes(out)).collect::<Vec<_>>();
+        let all = |told: &RunRecord| told.delivered.iter().map(|out| bytes(out)).collect::<Vec<_>>();
         prop_assert_eq!(all(&again), all(&told));
     }
 }

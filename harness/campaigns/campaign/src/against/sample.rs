@@ -3,11 +3,11 @@
 //! Mean and deviation take two passes. The first reads the results, and keeps the errors of each run in a temporary
 //! file, as a campaign can have millions of them; the second reads that file.
 
-use crate::case::ResultError;
-use crate::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
+use crate::execute::case::ResultError;
 use crate::plan::Case;
 use crate::store::CampaignResults;
-use crate::stream_key::StreamKey;
+use crate::store::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
+use crate::store::stream_key::StreamKey;
 use octant_sample::further::{FURTHER_COUNT, FURTHER_NAMES};
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_scenario::Method;

@@ -1,9 +1,9 @@
 //! Texts of a campaign's requirements, from its file and from its scenarios.
 
+use crate::judge::trace::requirements_of;
 use crate::plan::Plan;
-use crate::trace::requirements_of;
-use octant_requirements::Comparison;
-use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
+use octant_verdict::Comparison;
+use octant_verdict::requirement::{Check, Limit, Requirement, Requirements, Verification};
 
 /// Collects the requirements that the cases of a plan check, with notes about missing texts.
 pub(super) fn requirements(plan: &Plan) -> (Requirements, Vec<String>) {
@@ -58,7 +58,7 @@ fn sign(sign: &str) -> Comparison {
 }
 
 /// Builds a requirement of the campaign's file from the plan's data.
-fn planned(planned: &crate::requirements::Planned) -> Requirement {
+fn planned(planned: &crate::plan::requirements::Planned) -> Requirement {
     let check = &planned.check;
     let verification = Verification::Test(Check {
         measure: check.measure.clone(),

@@ -4,9 +4,9 @@
 //! combination are therefore independent of each other, those of several aren't, and bounds are
 //! given for single combinations only.
 
-use crate::factor_values::FactorValue;
+use crate::plan::factor_values::FactorValue;
+use crate::plan::shared::SharedText;
 use crate::plan::{Case, Plan};
-use crate::shared::SharedText;
 use octant_base::number;
 use octant_scenario::quantity_of;
 use std::collections::HashMap;

@@ -3,10 +3,10 @@
 use super::combination::Combination;
 use super::requirement;
 use super::rows::{ReportRow, ReportRows, RowOutcome};
+use crate::judge::status::CampaignStatus;
 use crate::plan::Plan;
-use crate::status::CampaignStatus;
 use octant_evidence::discrepancy::{Discrepancy, Subject};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 
 /// Lists everything that isn't a pass. `notes` are other problems, as text.

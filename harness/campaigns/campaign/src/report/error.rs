@@ -1,7 +1,7 @@
 //! Reasons why there is no report of a campaign.
 
-use crate::case::ResultError;
 use crate::execute::ExecuteError;
+use crate::execute::case::ResultError;
 use crate::plan::PlanError;
 use octant_base::failing::{Failing, FailureKind};
 use octant_evidence::ManifestError;

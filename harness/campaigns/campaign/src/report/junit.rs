@@ -5,8 +5,8 @@ use super::combination::Combination;
 use super::contents::CampaignReport;
 use super::discrepancy::checks_of;
 use super::rows::ReportRow;
-use octant_requirements::Verdict;
 use octant_score::junit::{JunitCase, JunitCases, JunitSuite, write_document};
+use octant_verdict::Verdict;
 use std::io;
 
 /// Cases of a suite: few of the whole campaign, or those of a combination, which are read when they are

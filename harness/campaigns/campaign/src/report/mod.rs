@@ -1,7 +1,8 @@
 //! Report of a campaign: numbers, discrepancies, and the evidence of both.
 //!
 //! [`rows`] reads the results, [`combination`] groups them, [`figures`] and [`requirement`] are
-//! their statistics, [`envelope`] those of the errors over time, [`units`] the units of the page, [`discrepancy`] lists everything that isn't a pass,
+//! their statistics, [`envelope`] those of the errors over time, [`units`] the units of the page, [`sites`]
+//! those at the site of a case, [`discrepancy`] lists everything that isn't a pass,
 //! [`disposition`](octant_evidence::disposition) has its dispositions, [`CampaignReport`] puts them together.
 //! The crate of the pages writes all of it into the folder of the campaign.
 
@@ -21,6 +22,7 @@ pub mod requirement;
 mod row_bytes;
 pub mod rows;
 pub mod selftest;
+pub mod sites;
 mod tables;
 pub mod units;
 

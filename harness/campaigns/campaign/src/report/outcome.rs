@@ -1,11 +1,11 @@
 //! Parts of a case's result that a report needs.
 
 use super::curves::{Curve, CurveWriter, StoredCurve};
-use crate::besides::besides;
-use crate::case::CaseResult;
-use octant_requirements::Verdict;
+use crate::execute::case::CaseResult;
+use crate::judge::except_requirements::besides;
 use octant_score::summary::{NavigationScore, Summary};
 use octant_score::verdict::RequirementResult;
+use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::io;
 

@@ -4,15 +4,15 @@
 use super::combination::Combination;
 use super::figures::CONFIDENCE;
 use super::rows::{ReportRow, ReportRows, RowOutcome};
+use crate::judge::status::{CampaignStatus, RequirementStatus};
 use crate::plan::Plan;
-use crate::status::{CampaignStatus, RequirementStatus};
-use octant_requirements::Verdict;
-use octant_requirements::requirement::{EnsembleRequirement, Requirements};
-use octant_requirements::trace::{VerdictCounts, claim};
 use octant_score::verdict::RequirementResult;
 use octant_statistics::cluster::{DrawCounts, DrawTally};
 use octant_statistics::convergence::{ConvergenceStep, convergence, pass};
 use octant_statistics::proportion::{Demand, Needed, further_at_rate, success_lower_bound};
+use octant_verdict::Verdict;
+use octant_verdict::requirement::{EnsembleRequirement, Requirements};
+use octant_verdict::trace::{VerdictCounts, claim};
 use serde::Serialize;
 
 /// Figures of a requirement over the cases.

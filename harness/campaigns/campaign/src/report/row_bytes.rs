@@ -2,8 +2,8 @@
 
 use super::curves::{CurveFile, StoredCurve};
 use super::outcome::{CaseDrift, RowOutcome};
-use octant_requirements::{Comparison, Verdict};
 use octant_score::verdict::RequirementResult;
+use octant_verdict::{Comparison, Verdict};
 use std::sync::Arc;
 
 /// Names and units of the errors of attitude and velocity: rows hold their places in this list.

@@ -1,7 +1,7 @@
 //! Reads `selftest.json` in the folder of a campaign: the result of the program's self-test.
 
 use octant_base::not_finite;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde::Deserialize;
 use std::path::Path;
 

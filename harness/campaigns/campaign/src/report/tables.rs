@@ -1,10 +1,10 @@
 //! Checks that the merged tables in the folder of a campaign are those of its results.
 
 use super::error::ReportError;
-use crate::chain;
+use crate::merge::chain;
 use crate::merge::merged;
+use crate::merge::results::TABLES;
 use crate::plan::Plan;
-use crate::results::TABLES;
 use crate::store::CampaignResults;
 use crate::table::{ExistingTable, TableError};
 use std::path::Path;

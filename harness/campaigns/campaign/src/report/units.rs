@@ -1,8 +1,8 @@
 //! Units of errors on the page of a campaign: those that are chosen, else those of its scenarios.
 
 use super::error::ReportError;
+use super::sites;
 use crate::plan::Plan;
-use crate::sites;
 use octant_base::display::{DisplayUnits, UnitChoice};
 use std::path::Path;
 

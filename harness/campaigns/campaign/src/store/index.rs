@@ -1,13 +1,13 @@
 //! Finds every result in the folder of a campaign, and reads it.
 
 use super::error::{PartError, ResultPlace};
+use super::facts::CaseFacts;
 use super::files;
 use super::frame::{Checksum, RecordKind, first};
 use super::scan::{Found, hex, read_checksum, read_head, read_whole, scan};
 use super::stored::{Stored, StoredFile, StoredId, StoredRecord, read_file};
 use super::writer::{EXTENSION, FOLDER};
-use crate::case::{CaseResult, ResultError};
-use crate::facts::CaseFacts;
+use crate::execute::case::{CaseResult, ResultError};
 use crate::plan::{Case, Plan};
 use octant_base::not_finite;
 use octant_base::pool::{each_in_order, processors};

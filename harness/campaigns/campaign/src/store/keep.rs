@@ -5,7 +5,7 @@ use super::frame::RecordKind;
 use super::index::{CampaignResults, facts_of};
 use super::scan::read_whole;
 use super::writer::{NewResult, PartWriter};
-use crate::case::{CaseResult, ResultError};
+use crate::execute::case::{CaseResult, ResultError};
 use std::fs::File;
 use std::path::Path;
 

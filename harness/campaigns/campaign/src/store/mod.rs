@@ -3,16 +3,20 @@
 //! A worker appends results to a part file of its own ([`writer`]): `results/NAME.octres`, whose bytes
 //! are those of `frame`. [`CampaignResults`] reads all parts of a folder, and the files of older
 //! versions, one for each result: `cases/xx/ID.json`. Nothing stored is ever changed: a later record
-//! names a result that doesn't count any more.
+//! names a result that doesn't count any more. The [facts](facts::CaseFacts) of a result are stored beside it.
 
 pub mod error;
+pub mod facts;
 mod files;
 mod frame;
+pub(crate) mod in_plan_order;
 mod index;
 mod keep;
+pub(crate) mod result_error;
 mod scan;
 pub mod segment;
 mod stored;
+pub(crate) mod stream_key;
 pub mod writer;
 
 pub use files::file;

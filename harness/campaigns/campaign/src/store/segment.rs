@@ -7,7 +7,7 @@ use super::error::PartError;
 use super::frame::{Checksum, FILE_HEAD, SCHEMA, file_head};
 use super::scan::{scan, scan_from};
 use super::writer::{EXTENSION, FOLDER};
-use crate::shard::Shard;
+use crate::plan::shard::Shard;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fs::File;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};

@@ -1,7 +1,7 @@
 //! Results as the index knows them: where each is, and what tells it from others.
 
-use crate::case::ResultError;
-use crate::case_id::CaseId;
+use crate::execute::case::ResultError;
+use crate::plan::case_id::CaseId;
 use std::cmp::Ordering;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};

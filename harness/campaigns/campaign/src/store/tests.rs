@@ -6,7 +6,7 @@ use super::error::{PartError, ResultPlace};
 use super::frame::{FILE_HEAD, SCHEMA, file_head};
 use super::writer::PartWriter;
 use super::{CampaignResults, StoreOutcome, file, forget_errors, has_at, keep, keep_in};
-use crate::case::{CaseResult, ResultError};
+use crate::execute::case::{CaseResult, ResultError};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

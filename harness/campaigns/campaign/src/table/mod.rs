@@ -6,6 +6,7 @@
 mod cursor;
 mod layout;
 mod read;
+pub(crate) mod spill;
 mod values;
 mod write;
 

@@ -64,8 +64,8 @@ where
     let folder = path.parent().unwrap_or(Path::new("."));
     let system = |source| TableError::System { action: "write", path: path.to_owned(), source };
     std::fs::create_dir_all(folder).map_err(system)?;
-    crate::clean(folder);
-    let new = crate::new_file(folder).map_err(system)?;
+    octant_base::whole_file::clean(folder);
+    let new = octant_base::whole_file::new_file(folder).map_err(system)?;
     let wrong = |error: ParquetError| TableError::Write {
         path: path.to_owned(),
         reason: error.to_string(),

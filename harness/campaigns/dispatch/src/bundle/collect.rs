@@ -1,10 +1,10 @@
 //! Collects the files of a plan, and makes the plan name them relative to its folder.
 
-use super::contents::{FILES, plain};
+use super::entry_name::{self, FILES};
 use super::error::BundleError;
+use octant_campaign::plan::planned::hash_of_file;
+use octant_campaign::plan::shared::SharedText;
 use octant_campaign::plan::{BundledCampaign, Plan, PlannedFile, PlannedScenario};
-use octant_campaign::planned::hash_of_file;
-use octant_campaign::shared::SharedText;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::Campaign;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -44,7 +44,7 @@ impl Collected {
                 let campaign = all.plan.campaign.clone();
                 let requirements = Campaign::load(&campaign)?.requirements;
                 // Says so if the requirements aren't the planned ones.
-                octant_campaign::trace::requirements_of(&all.plan)?;
+                octant_campaign::judge::trace::requirements_of(&all.plan)?;
                 BundledCampaign {
                     campaign: all.add(&campaign)?,
                     requirements: requirements.map(|file| all.add(&file)).transpose()?,
@@ -101,7 +101,7 @@ impl Collected {
             });
         }
         let (blake3, bytes) = hash_of_file(path).map_err(BundleError::system("read", path))?;
-        let name = plain(&path.file_name().unwrap_or_default().to_string_lossy());
+        let name = entry_name::plain(&path.file_name().unwrap_or_default().to_string_lossy());
         let entry = format!("{FILES}/{blake3}/{name}");
         let planned = PlannedFile { file: PathBuf::from(&entry), blake3: blake3.clone() };
         self.files.insert(entry, CollectedFile { file: path.to_owned(), bytes, blake3 });

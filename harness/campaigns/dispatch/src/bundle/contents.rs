@@ -1,19 +1,16 @@
 //! The list of a bundle, `bundle.json`: version, plan, program, and every file with its BLAKE3.
 
-use super::error::{BundleError, EntryNameError};
+use super::entry_name::{self, LIST};
+use super::error::BundleError;
 use octant_campaign::plan::{FILE_NAME as PLAN, Plan, PlannedFile, short};
 use octant_evidence::manifest::program_sha256;
 use octant_score::numerics::{NUMERICS, differs};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// Version of bundles.
 pub const SCHEMA: u32 = 1;
-/// Name of the list, in a bundle and in the folder that is made from it.
-pub const FILE_NAME: &str = "bundle.json";
-/// Folder of the files, in both.
-pub const FILES: &str = "files";
 
 /// The list of a bundle.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -92,14 +89,13 @@ impl BundleContents {
             entry: entry.to_owned(),
             reason,
         };
-        let form = |error: serde_json::Error| {
-            wrong(FILE_NAME, format!("is not the list of a bundle: {error}"))
-        };
+        let form =
+            |error: serde_json::Error| wrong(LIST, format!("is not the list of a bundle: {error}"));
         // The version is checked first: nothing else is reliable in a newer list.
         let Version { schema } = serde_json::from_slice(bytes).map_err(form)?;
         if schema != SCHEMA {
             return Err(wrong(
-                FILE_NAME,
+                LIST,
                 format!(
                     "has version {schema}, this program reads version {SCHEMA}{}",
                     if schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
@@ -111,7 +107,7 @@ impl BundleContents {
         // Nor may anything be there that isn't read: the bytes are those of this form.
         if hash != contents.blake3 || contents.to_json().as_bytes() != bytes {
             return Err(wrong(
-                FILE_NAME,
+                LIST,
                 format!(
                     "was changed after it was made: its contents give {}, expected {} and nothing else",
                     short(&hash),
@@ -120,7 +116,7 @@ impl BundleContents {
             ));
         }
         for file in &contents.files {
-            check_path(&file.path).map_err(|error| wrong(&file.path, error.to_string()))?;
+            entry_name::check(&file.path).map_err(|error| wrong(&file.path, error.to_string()))?;
             if file.path != PLAN && file.path.split('/').nth(1) != Some(&file.blake3) {
                 let reason = format!(
                     "is listed with another hash than that of its name: found {}",
@@ -137,7 +133,7 @@ impl BundleContents {
     /// # Errors
     /// If it can't be read, or as [`Self::from_json`].
     pub fn of_folder(folder: &Path) -> Result<Option<Self>, BundleError> {
-        let path = folder.join(FILE_NAME);
+        let path = folder.join(LIST);
         match std::fs::read(&path) {
             Ok(bytes) => Self::from_json(folder, &bytes).map(Some),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -205,103 +201,5 @@ impl BundleContents {
             told += &format!("; the bundle was {numerics}");
         }
         Some(told)
-    }
-}
-
-/// Checks the name of an entry: one of the two lists, or a file in the folder of its hash.
-pub(super) fn check_path(path: &str) -> Result<(), EntryNameError> {
-    if path == PLAN || path == FILE_NAME {
-        return Ok(());
-    }
-    if path.starts_with(['/', '\\']) || path.get(1..2) == Some(":") {
-        return Err(EntryNameError::Absolute);
-    }
-    if path.split(['/', '\\']).any(|part| part == "..") {
-        return Err(EntryNameError::Outside);
-    }
-    let parts: Vec<&str> = path.split('/').collect();
-    let is_hash = |text: &str| {
-        text.len() == 64 && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
-    };
-    match parts[..] {
-        [FILES, hash, name] if is_hash(hash) && name == plain(name) => Ok(()),
-        _ => Err(EntryNameError::Unknown),
-    }
-}
-
-/// Returns a name that every system takes as the name of a file in a folder.
-pub(super) fn plain(name: &str) -> String {
-    let forbidden = |c: char| {
-        c.is_control() || matches!(c, '/' | '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|')
-    };
-    let name: String = name.chars().map(|c| if forbidden(c) { '_' } else { c }).collect();
-    let mut parts = Path::new(&name).components();
-    match (parts.next(), parts.next()) {
-        (Some(Component::Normal(_)), None) => name,
-        _ => "file".to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn entries_stay_in_their_folder() {
-        let hash = "0".repeat(64);
-        for good in ["plan.json".to_owned(), format!("files/{hash}/a b.fmu")] {
-            assert_eq!(check_path(&good), Ok(()));
-        }
-        for (bad, reason) in [
-            ("/etc/passwd".to_owned(), EntryNameError::Absolute),
-            ("\\\\host\\share".to_owned(), EntryNameError::Absolute),
-            ("C:\\windows".to_owned(), EntryNameError::Absolute),
-            (format!("files/{hash}/../../a"), EntryNameError::Outside),
-            ("..\\a".to_owned(), EntryNameError::Outside),
-            (format!("files/{hash}/a/b"), EntryNameError::Unknown),
-            (format!("files/{hash}/"), EntryNameError::Unknown),
-            (format!("files/{hash}/a:b"), EntryNameError::Unknown),
-            (format!("files/{}/a", "0".repeat(63)), EntryNameError::Unknown),
-            (format!("files/{}/a", "G".repeat(64)), EntryNameError::Unknown),
-            ("results/a.octres".to_owned(), EntryNameError::Unknown),
-        ] {
-            assert_eq!(check_path(&bad), Err(reason), "{bad}");
-        }
-    }
-
-    #[test]
-    fn names_of_files_are_made_plain() {
-        for (name, expected) in [
-            ("ship 1.fmu", "ship 1.fmu"),
-            ("a:b\n", "a_b_"),
-            ("..", "file"),
-            (".", "file"),
-            ("", "file"),
-        ] {
-            assert_eq!(plain(name), expected);
-            assert_eq!(check_path(&format!("files/{}/{}", "a".repeat(64), plain(name))), Ok(()));
-        }
-    }
-
-    #[test]
-    fn a_list_that_was_changed_is_refused() {
-        let contents = BundleContents::new("p", vec!["exec:./core".to_owned()], Vec::new());
-        let path = Path::new("b.zip");
-        let json = contents.to_json();
-        assert_eq!(BundleContents::from_json(path, json.as_bytes()).unwrap(), contents);
-        let edited = json.replace("exec:./core", "exec:./cord");
-        let error = BundleContents::from_json(path, edited.as_bytes()).unwrap_err().to_string();
-        assert!(error.contains("b.zip") && error.contains("was changed"), "{error}");
-    }
-
-    #[test]
-    fn another_program_is_told_with_its_numerics() {
-        let own = BundleContents::new("p", Vec::new(), Vec::new());
-        assert_eq!(own.by_another(), None);
-        let other = BundleContents { program_sha256: Some("f".repeat(64)), ..own.clone() };
-        let told = other.by_another().unwrap();
-        assert!(told.contains("ffffffffffff") && !told.contains("numerics"), "{told}");
-        let numerics = BundleContents { numerics: NUMERICS + 1, ..other };
-        assert!(numerics.by_another().unwrap().contains("numerics version"));
     }
 }

@@ -1,6 +1,7 @@
 //! Makes the folder of a campaign from a bundle.
 
-use super::contents::{BundleContents, BundledFile, FILE_NAME, check_path};
+use super::contents::{BundleContents, BundledFile};
+use super::entry_name::{self, LIST};
 use super::error::BundleError;
 use octant_campaign::plan::{FILE_NAME as PLAN, Plan, short};
 use std::collections::BTreeSet;
@@ -50,11 +51,12 @@ pub fn unpack(bundle: &Path, folder: &Path) -> Result<BundleContents, BundleErro
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty());
     let parent = parent.unwrap_or(Path::new("."));
     std::fs::create_dir_all(parent).map_err(BundleError::system("create", parent))?;
-    let new = new_folder(parent).map_err(BundleError::system("create a folder in", parent))?;
+    let new = octant_base::whole_file::new_folder(parent)
+        .map_err(BundleError::system("create a folder in", parent))?;
     for listed in &contents.files {
         extract(bundle, &mut archive, listed, new.path())?;
     }
-    let list = new.path().join(FILE_NAME);
+    let list = new.path().join(LIST);
     std::fs::write(&list, contents.to_json()).map_err(BundleError::system("write", list))?;
     let plan = Plan::read(&new.path().join(PLAN))?;
     contents.check_plan(bundle, &plan, new.path())?;
@@ -68,16 +70,6 @@ pub fn unpack(bundle: &Path, folder: &Path) -> Result<BundleContents, BundleErro
     Ok(contents)
 }
 
-/// Makes a folder with the permissions of any new one; it is removed with everything in it if it isn't
-/// kept.
-fn new_folder(parent: &Path) -> io::Result<tempfile::TempDir> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".octant-").suffix(".new");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    builder.tempdir_in(parent)
-}
-
 type Archive = ZipArchive<BufReader<File>>;
 
 fn wrong(bundle: &Path, entry: &str, reason: impl Into<String>) -> BundleError {
@@ -89,21 +81,21 @@ fn list(bundle: &Path, archive: &mut Archive) -> Result<BundleContents, BundleEr
     let mut names = BTreeSet::new();
     for name in archive.file_names_raw() {
         let name = String::from_utf8_lossy(name).into_owned();
-        check_path(&name).map_err(|error| wrong(bundle, &name, error.to_string()))?;
+        entry_name::check(&name).map_err(|error| wrong(bundle, &name, error.to_string()))?;
         names.insert(name);
     }
-    if !names.remove(FILE_NAME) {
+    if !names.remove(LIST) {
         return Err(BundleError::Form {
             path: bundle.to_owned(),
             reason: format!(
-                "found a ZIP archive without {FILE_NAME}, expected a bundle of octant campaign bundle"
+                "found a ZIP archive without {LIST}, expected a bundle of octant campaign bundle"
             ),
         });
     }
     let mut bytes = Vec::new();
     let damaged =
-        |error: &dyn std::fmt::Display| wrong(bundle, FILE_NAME, format!("is damaged: {error}"));
-    let entry = archive.by_name(FILE_NAME).map_err(|error| damaged(&error))?;
+        |error: &dyn std::fmt::Display| wrong(bundle, LIST, format!("is damaged: {error}"));
+    let entry = archive.by_name(LIST).map_err(|error| damaged(&error))?;
     entry.take(LIST_BYTES).read_to_end(&mut bytes).map_err(|error| damaged(&error))?;
     let contents = BundleContents::from_json(bundle, &bytes)?;
     for file in &contents.files {
@@ -113,7 +105,7 @@ fn list(bundle: &Path, archive: &mut Archive) -> Result<BundleContents, BundleEr
     }
     match names.first() {
         None => Ok(contents),
-        Some(extra) => Err(wrong(bundle, extra, format!("is not in the list, {FILE_NAME}"))),
+        Some(extra) => Err(wrong(bundle, extra, format!("is not in the list, {LIST}"))),
     }
 }
 

@@ -1,10 +1,11 @@
 //! Writes a bundle.
 
 use super::collect::Collected;
-use super::contents::{BundleContents, BundledFile, FILE_NAME};
+use super::contents::{BundleContents, BundledFile};
+use super::entry_name::LIST;
 use super::error::BundleError;
+use octant_campaign::plan::planned::hash_of_file;
 use octant_campaign::plan::{FILE_NAME as PLAN, Plan};
-use octant_campaign::planned::hash_of_file;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
@@ -43,13 +44,13 @@ pub fn write(plan: Plan, out: &Path) -> Result<BundleContents, BundleError> {
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(BundleError::system("create", folder))?;
-    octant_campaign::clean(folder);
-    let new = octant_campaign::new_file(folder)
+    octant_base::whole_file::clean(folder);
+    let new = octant_base::whole_file::new_file(folder)
         .map_err(BundleError::system("create a file in", folder))?;
     let wrong = |error: ZipError| BundleError::system("write", out)(error.into());
     let mut archive = ZipWriter::new(BufWriter::new(new.as_file()));
     // The list comes first, so that it is found without reading the rest.
-    put(&mut archive, FILE_NAME, contents.to_json().as_bytes()).map_err(wrong)?;
+    put(&mut archive, LIST, contents.to_json().as_bytes()).map_err(wrong)?;
     put(&mut archive, PLAN, text.as_bytes()).map_err(wrong)?;
     for (path, collected) in &files {
         let mut source =

@@ -4,7 +4,7 @@ use super::drift::DRAWN_MAX;
 use super::elements::heading;
 use maud::{Markup, html};
 use octant_campaign::report::CampaignReport;
-use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
+use octant_report::chart::{Band, Chart, Line, Role};
 use octant_statistics::convergence::ConvergenceStep;
 
 pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
@@ -23,12 +23,12 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
             p.hint { "Estimates from the first draws of the plan, with intervals at 95 %, where the draws are enough for one." }
             div.multiples {
                 @for r in requirements() {
-                    (chart(&r.id, "probability that a draw passes, %", &[("passed", ChartRole::Primary, &r.convergence)], 100.0))
+                    (chart(&r.id, "probability that a draw passes, %", &[("passed", Role::Primary, &r.convergence)], 100.0))
                 }
                 @for (combination, figures) in drifts().take(DRAWN_MAX) {
                     (chart(&combination.name(), &radial, &[
-                        ("CEP50", ChartRole::Primary, &figures.convergence_cep50),
-                        ("R95", ChartRole::Baseline, &figures.convergence_r95),
+                        ("CEP50", Role::Primary, &figures.convergence_cep50),
+                        ("R95", Role::Baseline, &figures.convergence_r95),
                     ], unit.factor))
                 }
             }
@@ -39,7 +39,7 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
 fn chart(
     of: &str,
     unit: &str,
-    estimates: &[(&str, ChartRole, &Vec<ConvergenceStep>)],
+    estimates: &[(&str, Role, &Vec<ConvergenceStep>)],
     factor: f64,
 ) -> Markup {
     let mut chart = Chart::new(&format!("{of}: {unit} by number of draws"), "draws", unit);
@@ -55,7 +55,7 @@ fn chart(
                 .map(|s| [s.runs as f64, factor * s.estimate.low, factor * s.estimate.high])
                 .collect(),
         });
-        chart.lines.push(ChartLine {
+        chart.lines.push(Line {
             label: (*label).to_owned(),
             role: *role,
             points: steps.iter().map(|s| [s.runs as f64, factor * s.estimate.value]).collect(),

@@ -7,7 +7,7 @@ use octant_base::number;
 use octant_campaign::report::CampaignReport;
 use octant_campaign::report::envelope::PERCENTILES;
 use octant_campaign::report::figures::{CombinationFigures, ScenarioFigures};
-use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
+use octant_report::chart::{Band, Chart, Line, Role};
 
 /// Maximum number of combinations that are drawn.
 pub(super) const DRAWN_MAX: usize = 24;
@@ -188,9 +188,7 @@ fn chart(of: &str, name: &str, hours: &[f64], curves: &[Vec<f64>]) -> Markup {
         curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)
     };
     let percentile = |curve: usize| number::plain(100.0 * PERCENTILES[curve], 3);
-    for (role, from, to) in
-        [(ChartRole::Reference, least, greatest), (ChartRole::Primary, low, high)]
-    {
+    for (role, from, to) in [(Role::Reference, least, greatest), (Role::Primary, low, high)] {
         let points = hours.iter().enumerate();
         chart.bands.push(Band {
             label: format!("{} to {} %", percentile(from), percentile(to)),
@@ -199,9 +197,9 @@ fn chart(of: &str, name: &str, hours: &[f64], curves: &[Vec<f64>]) -> Markup {
         });
     }
     let points = hours.iter().enumerate();
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: "median".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: points.map(|(k, hours)| [*hours, value(middle, k)]).collect(),
     });
     chart.render()

@@ -19,7 +19,7 @@ use maud::{Markup, html};
 use octant_base::number;
 use octant_campaign::report::{CampaignReport, again};
 use octant_report::page::{badge, page};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 /// Renders the report as one HTML file. `beside` tells that it is in the folder of the campaign:
 /// then each case has the command that shows its result.

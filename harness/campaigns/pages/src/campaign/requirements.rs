@@ -7,11 +7,11 @@ use octant_campaign::report::requirement::{self, CombinationChecks, RequirementF
 use octant_campaign::report::{CampaignReport, POLICY};
 use octant_report::page::badge;
 use octant_report::units::{PageUnit, is_of_place, shown, unit};
-use octant_requirements::Verdict;
-use octant_requirements::requirement::percent;
-use octant_requirements::trace::VerdictCounts;
 use octant_statistics::cluster::DrawCounts;
 use octant_statistics::proportion::Needed;
+use octant_verdict::Verdict;
+use octant_verdict::requirement::percent;
+use octant_verdict::trace::VerdictCounts;
 
 pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     let all = &report.statistics.requirements;

@@ -5,7 +5,7 @@ use crate::bench::CaseBench;
 use crate::error::CaseSetupError;
 use crate::judge::CaseOutcome;
 use crate::scenarios::{ALWAYS, campaign};
-use octant_campaign::case::ResultError;
+use octant_campaign::execute::case::ResultError;
 use octant_campaign::store::CampaignResults;
 use serde_json::Value;
 use std::path::Path;

@@ -27,7 +27,7 @@ mod strapdown;
 mod units;
 
 use super::bench::CaseBench;
-use super::case::{COMPUTED_LIMIT, SelftestCase};
+use super::case::{COMPUTED_LIMIT, Case};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation, Known};
 use numbers::{Found, known};
@@ -46,9 +46,9 @@ fn case(
     known: Vec<Known>,
     source: &'static str,
     run: fn(&CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError>,
-) -> SelftestCase {
+) -> Case {
     let expectation = Expectation::Numbers { known, source };
-    SelftestCase { id, about, expectation, limit: COMPUTED_LIMIT, run }
+    Case { id, about, expectation, limit: COMPUTED_LIMIT, run }
 }
 
 /// Whole runs with known numbers that take less than a second.
@@ -56,7 +56,7 @@ const QUICK_RUNS: [&str; 3] = ["g-dependent-drift", "observability", "posterior-
 
 /// Lists the cases that `octant selftest --answers` runs. No hash of our own output is among them.
 #[must_use]
-pub fn with_runs() -> Vec<SelftestCase> {
+pub fn with_runs() -> Vec<Case> {
     let mut all = cases();
     all.extend(super::golden::cases().into_iter().filter(|case| QUICK_RUNS.contains(&case.id)));
     all
@@ -64,7 +64,7 @@ pub fn with_runs() -> Vec<SelftestCase> {
 
 /// Lists the known-answer tests of every part.
 #[must_use]
-pub fn cases() -> Vec<SelftestCase> {
+pub fn cases() -> Vec<Case> {
     vec![
         case(
             "answers-earth",

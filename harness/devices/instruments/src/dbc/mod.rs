@@ -20,12 +20,12 @@
 
 mod database;
 mod gather;
-mod mapping;
 mod signal;
+mod signal_mapping;
 
 pub use database::Database;
 pub use gather::{CanCounters, CanFrame, Gatherer};
-pub use mapping::{GimbalSignals, One, SignalMapping, Three, Valid};
+pub use signal_mapping::{GimbalSignals, One, SignalMapping, Three, Valid};
 
 use std::string::String;
 

@@ -13,7 +13,6 @@ use std::borrow::ToOwned;
 use std::format;
 use std::string::{String, ToString as _};
 use std::vec::Vec;
-use toml::de::DeTable;
 
 /// A frame in one of its forms.
 struct ReadFrame {
@@ -29,11 +28,9 @@ pub(super) fn read(
     text: &str,
 ) -> Result<(String, RecordDescription), DescriptionProblem> {
     let text = Text { file, text };
-    let table = DeTable::parse(text.text).map_err(|error| {
-        let offset = error.span().map_or(text.text.len(), |span| span.start);
-        text.problem(offset, format!("not TOML: {}", error.message().replace('\n', ", ")))
-    })?;
-    let root = Table::root(text, table.get_ref());
+    let table = octant_toml_tree::read(text.text)
+        .map_err(|problem| text.problem(&problem.place, problem.message))?;
+    let root = Table::root(text, &table);
     // First, so that a newer file is refused for that and not for its new keys.
     let version = root
         .integer("version", 1..=i64::MAX)?

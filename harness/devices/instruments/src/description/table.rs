@@ -2,12 +2,11 @@
 
 use super::problem::DescriptionProblem;
 use octant_base::names::suggestion;
-use std::borrow::ToOwned as _;
+use octant_toml_tree::error::Place;
+use octant_toml_tree::{Node, Value, number_as_written};
 use std::format;
-use std::string::{String, ToString as _};
+use std::string::String;
 use std::vec::Vec;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
 
 /// A file and its text.
 #[derive(Clone, Copy, Debug)]
@@ -17,26 +16,18 @@ pub(super) struct Text<'a> {
 }
 
 impl Text<'_> {
-    /// Makes a problem at an offset of the text.
-    pub(super) fn problem(&self, offset: usize, what: String) -> DescriptionProblem {
-        let before = self.text.get(..offset).unwrap_or(self.text);
-        let line = 1 + before.matches('\n').count();
+    /// Makes a problem at a place of the text.
+    pub(super) fn problem(&self, place: &Place, what: String) -> DescriptionProblem {
+        let line = if let Place::File { line, .. } = place { *line } else { 1 };
         DescriptionProblem { place: format!("{}:{line}", self.file), what }
     }
-}
 
-type Value<'a> = Spanned<DeValue<'a>>;
-
-/// Describes a value, for "found …".
-fn describe(value: &DeValue<'_>) -> String {
-    match value {
-        DeValue::String(text) => format!("{:?}", text.as_ref()),
-        DeValue::Integer(number) => number.to_string(),
-        DeValue::Float(number) => number.to_string(),
-        DeValue::Boolean(value) => value.to_string(),
-        DeValue::Datetime(date) => format!("the date {date}"),
-        DeValue::Array(entries) => format!("an array of {}", entries.len()),
-        DeValue::Table(_) => "a table".to_owned(),
+    /// Describes a value, for "found …".
+    fn describe(&self, node: &Node) -> String {
+        match &node.value {
+            Value::Integer(_) | Value::Number(_) => number_as_written(self.text, &node.place),
+            other => other.describe(),
+        }
     }
 }
 
@@ -44,22 +35,22 @@ fn describe(value: &DeValue<'_>) -> String {
 #[derive(Clone, Debug)]
 pub(super) struct Table<'a> {
     text: Text<'a>,
-    table: &'a DeTable<'a>,
+    table: &'a octant_toml_tree::Table,
     /// Name in messages, with a point behind it; empty at the root.
     name: String,
-    /// Offset of the table in the text.
-    offset: usize,
+    /// Place of the table in the text.
+    place: Place,
 }
 
 impl<'a> Table<'a> {
     /// Makes the table of a whole file.
-    pub(super) fn root(text: Text<'a>, table: &'a DeTable<'a>) -> Self {
-        Self { text, table, name: String::new(), offset: 0 }
+    pub(super) fn root(text: Text<'a>, table: &'a octant_toml_tree::Table) -> Self {
+        Self { text, table, name: String::new(), place: Place::File { line: 1, column: 1 } }
     }
 
     /// Value of a key.
-    fn value(&self, key: &str) -> Option<&'a Value<'a>> {
-        self.table.iter().find(|(found, _)| found.get_ref() == key).map(|(_, value)| value)
+    fn value(&self, key: &str) -> Option<&'a Node> {
+        self.table.get(key)
     }
 
     /// True if the key is given.
@@ -69,35 +60,30 @@ impl<'a> Table<'a> {
 
     /// Makes a problem of a key, or of the table if the key is omitted.
     pub(super) fn problem(&self, key: &str, what: impl core::fmt::Display) -> DescriptionProblem {
-        let offset = self.value(key).map_or(self.offset, |value| value.span().start);
-        self.text.problem(offset, format!("{}{key}: {what}", self.name))
+        let place = self.value(key).map_or(&self.place, |value| &value.place);
+        self.text.problem(place, format!("{}{key}: {what}", self.name))
     }
 
     /// Makes a problem of the table as a whole.
     pub(super) fn problem_of_all(&self, what: impl core::fmt::Display) -> DescriptionProblem {
         let name = self.name.trim_end_matches('.');
         let colon = if name.is_empty() { "" } else { ": " };
-        self.text.problem(self.offset, format!("{name}{colon}{what}"))
+        self.text.problem(&self.place, format!("{name}{colon}{what}"))
     }
 
     /// Checks that there are no other keys.
     pub(super) fn only(&self, known: &[&str]) -> Result<(), DescriptionProblem> {
-        let mut unknown: Vec<(usize, &str)> = (self.table.iter())
-            .map(|(key, _)| (key.span().start, key.get_ref().as_ref()))
-            .filter(|(_, key)| !known.contains(key))
-            .collect();
-        unknown.sort_unstable();
-        match unknown.first() {
+        match self.table.entries.iter().find(|entry| !known.contains(&entry.key.as_str())) {
             None => Ok(()),
-            Some((offset, key)) => {
+            Some(octant_toml_tree::Entry { key, place, .. }) => {
                 let known = suggestion(key, known.iter().copied(), "known keys");
-                Err(self.text.problem(*offset, format!("{}{key}: unknown key; {known}", self.name)))
+                Err(self.text.problem(place, format!("{}{key}: unknown key; {known}", self.name)))
             }
         }
     }
 
-    fn wrong(&self, key: &str, value: &Value<'_>, expected: &str) -> DescriptionProblem {
-        self.problem(key, format!("found {}, expected {expected}", describe(value.get_ref())))
+    fn wrong(&self, key: &str, value: &Node, expected: &str) -> DescriptionProblem {
+        self.problem(key, format!("found {}, expected {expected}", self.text.describe(value)))
     }
 
     fn missing(&self, key: &str, expected: &str) -> DescriptionProblem {
@@ -106,10 +92,10 @@ impl<'a> Table<'a> {
 
     /// Text under a key, if it is given.
     pub(super) fn text(&self, key: &str) -> Result<Option<&'a str>, DescriptionProblem> {
-        match self.value(key).map(|value| (value, value.get_ref())) {
+        match self.value(key).map(|value| (value, &value.value)) {
             None => Ok(None),
-            Some((_, DeValue::String(text))) if !text.chars().any(char::is_control) => {
-                Ok(Some(text.as_ref()))
+            Some((_, Value::Text(text))) if !text.chars().any(char::is_control) => {
+                Ok(Some(text.as_str()))
             }
             Some((value, _)) => Err(self.wrong(key, value, "a text of one line")),
         }
@@ -163,11 +149,7 @@ impl<'a> Table<'a> {
     /// Finite number, if the key is given.
     pub(super) fn number(&self, key: &str) -> Result<Option<f64>, DescriptionProblem> {
         let Some(value) = self.value(key) else { return Ok(None) };
-        let number = match value.get_ref() {
-            DeValue::Float(number) => number.as_str().parse().ok(),
-            _ => integer(value).map(|number| number as f64),
-        };
-        match number.filter(|number: &f64| number.is_finite()) {
+        match octant_toml_tree::number(&value.value).filter(|number: &f64| number.is_finite()) {
             Some(number) => Ok(Some(number)),
             None => Err(self.wrong(key, value, "a finite number")),
         }
@@ -175,9 +157,9 @@ impl<'a> Table<'a> {
 
     /// Boolean, if the key is given.
     pub(super) fn boolean(&self, key: &str) -> Result<Option<bool>, DescriptionProblem> {
-        match self.value(key).map(|value| (value, value.get_ref())) {
+        match self.value(key).map(|value| (value, &value.value)) {
             None => Ok(None),
-            Some((_, DeValue::Boolean(found))) => Ok(Some(*found)),
+            Some((_, Value::Boolean(found))) => Ok(Some(*found)),
             Some((value, _)) => Err(self.wrong(key, value, "true or false")),
         }
     }
@@ -187,8 +169,8 @@ impl<'a> Table<'a> {
         let expected = format!("an array of 1 to {most} bytes, such as [0xFE, 0x81]");
         let Some(value) = self.value(key) else { return Err(self.missing(key, &expected)) };
         let wrong = || self.wrong(key, value, &expected);
-        let DeValue::Array(entries) = value.get_ref() else { return Err(wrong()) };
-        let byte = |entry: &Value<'_>| integer(entry).and_then(|byte| u8::try_from(byte).ok());
+        let Value::Array(entries) = &value.value else { return Err(wrong()) };
+        let byte = |entry: &Node| integer(entry).and_then(|byte| u8::try_from(byte).ok());
         let bytes: Option<Vec<u8>> = entries.iter().map(byte).collect();
         bytes.filter(|bytes| (1..=most).contains(&bytes.len())).ok_or_else(wrong)
     }
@@ -196,8 +178,8 @@ impl<'a> Table<'a> {
     /// Table under a key, if it is given.
     pub(super) fn table(&self, key: &str) -> Result<Option<Table<'a>>, DescriptionProblem> {
         let Some(value) = self.value(key) else { return Ok(None) };
-        match value.get_ref() {
-            DeValue::Table(table) => Ok(Some(self.inner(table, key, value.span().start))),
+        match &value.value {
+            Value::Table(table) => Ok(Some(self.inner(table, key, &value.place))),
             _ => Err(self.wrong(key, value, "a table")),
         }
     }
@@ -205,27 +187,26 @@ impl<'a> Table<'a> {
     /// Tables of an array; none if the key is omitted.
     pub(super) fn tables(&self, key: &str) -> Result<Vec<Table<'a>>, DescriptionProblem> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
-        let DeValue::Array(entries) = value.get_ref() else {
+        let Value::Array(entries) = &value.value else {
             return Err(self.wrong(key, value, "an array of tables"));
         };
-        let tables = entries.iter().enumerate().map(|(index, entry)| match entry.get_ref() {
-            DeValue::Table(table) => {
-                Ok(self.inner(table, &format!("{key}[{index}]"), entry.span().start))
-            }
+        let tables = entries.iter().enumerate().map(|(index, entry)| match &entry.value {
+            Value::Table(table) => Ok(self.inner(table, &format!("{key}[{index}]"), &entry.place)),
             _ => Err(self.wrong(key, entry, "a table")),
         });
         tables.collect()
     }
 
-    fn inner(&self, table: &'a DeTable<'a>, key: &str, offset: usize) -> Table<'a> {
-        Table { text: self.text, table, name: format!("{}{key}.", self.name), offset }
+    fn inner(&self, table: &'a octant_toml_tree::Table, key: &str, place: &Place) -> Table<'a> {
+        let name = format!("{}{key}.", self.name);
+        Table { text: self.text, table, name, place: place.clone() }
     }
 }
 
 /// Whole number, if a value is one of 64 bits.
-fn integer(value: &Value<'_>) -> Option<i64> {
-    match value.get_ref() {
-        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok(),
+fn integer(node: &Node) -> Option<i64> {
+    match node.value {
+        Value::Integer(number) => Some(number),
         _ => None,
     }
 }

@@ -4,8 +4,8 @@
 //! header. Roll is right-handed about the forward axis, pitch about the right one, azimuth from north by east. A receiver
 //! may send several of the logs: the first one with a solution counts, and the others are left out.
 
+use super::reading::{NavigationReading, position_rad};
 use super::time::gps;
-use super::{NavigationReading, position_rad};
 use crate::bytes::Reader;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::novatel::{self, SYNC, ascii};

@@ -3,8 +3,8 @@
 //! Stamps are microseconds since power-on. `UTC_TIME` tells which UTC belongs to one of them; the others follow by the same
 //! clock. Without a valid one the time is the unit's own.
 
+use super::reading::{NavigationReading, angles_rad, position_rad};
 use super::time::{Calendar, NavigationTime};
-use super::{NavigationReading, angles_rad, position_rad};
 use crate::bytes::Reader;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::rollover::Rollover;

@@ -4,8 +4,8 @@
 //! unit no longer moves its position. Without that field everything counts but a position of zeros. The time is `TimeGps`, else
 //! `TimeUtc`, else `TimeStartup`.
 
+use super::reading::{NavigationReading, position_rad};
 use super::time::{Calendar, NavigationTime};
-use super::{NavigationReading, position_rad};
 use crate::bytes::Reader;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::vectornav::{

@@ -4,8 +4,8 @@
 //! forward, left, up in the first and last, and forward, right, down in the second. The time is `UtcTime` where its flags say
 //! that it is valid, else `SampleTimeFine`. A frame whose status word says that the filter is not valid has its time alone.
 
+use super::reading::{NavigationReading, angles_rad, position_rad};
 use super::time::{Calendar, NavigationTime};
-use super::{NavigationReading, angles_rad, position_rad};
 use crate::bytes::Reader;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::rollover::Rollover;

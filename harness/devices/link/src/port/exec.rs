@@ -1,7 +1,8 @@
 //! A program as the device: its standard input and output are the line. [`ExecPort`] is the end of the
 //! harness, [`StdioPort`] that of the device.
 
-use super::{Bytes, PortError};
+use super::bytes::Bytes;
+use super::error::PortError;
 use crate::Uri;
 use crate::uri::Exec;
 use octant_base::child::{InputPipe, OutputLimit, PassedOn};

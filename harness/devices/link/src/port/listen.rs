@@ -1,42 +1,14 @@
 //! Listening to a CAN bus: the frames of all nodes, with identifiers of 11 or 29 bits.
 
-use super::{PortError, SlcanPort};
+use super::error::PortError;
+#[cfg(not(all(target_os = "linux", feature = "can")))]
+use super::error::WITHOUT_CAN;
+use super::frames::HeardFrame;
+use super::slcan::SlcanPort;
+#[cfg(all(target_os = "linux", feature = "can"))]
+use super::socket_can::SocketCan;
 use crate::Uri;
 use std::time::{Duration, SystemTime};
-
-/// A frame of any node.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub struct HeardFrame {
-    /// Identifier.
-    pub id: u32,
-    /// True for an identifier of 29 bits.
-    pub extended: bool,
-    pub(super) length: u8,
-    pub(super) bytes: [u8; 64],
-}
-
-impl HeardFrame {
-    /// Creates a frame with at most 64 data bytes; more are left out.
-    #[must_use]
-    pub fn new(id: u32, extended: bool, data: &[u8]) -> Self {
-        let mut bytes = [0; 64];
-        let length = data.len().min(64);
-        bytes[..length].copy_from_slice(&data[..length]);
-        Self { id, extended, length: length as u8, bytes }
-    }
-
-    /// Data bytes.
-    #[must_use]
-    pub fn data(&self) -> &[u8] {
-        &self.bytes[..usize::from(self.length)]
-    }
-}
-
-impl std::fmt::Debug for HeardFrame {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:X}{}#{:02X?}", self.id, if self.extended { "x" } else { "" }, self.data())
-    }
-}
 
 /// A listener on a CAN bus, which sends nothing.
 #[derive(Debug)]
@@ -47,7 +19,7 @@ pub struct Listener {
 #[derive(Debug)]
 enum Bus {
     #[cfg(all(target_os = "linux", feature = "can"))]
-    Kernel(super::SocketCan),
+    Kernel(SocketCan),
     Slcan(Box<SlcanPort>),
 }
 
@@ -61,11 +33,11 @@ impl Listener {
         let bus = match uri {
             Uri::Slcan(slcan) => Bus::Slcan(Box::new(SlcanPort::open(slcan)?)),
             #[cfg(all(target_os = "linux", feature = "can"))]
-            Uri::Can(can) => Bus::Kernel(super::SocketCan::listen(can, identifiers)?),
+            Uri::Can(can) => Bus::Kernel(SocketCan::listen(can, identifiers)?),
             #[cfg(not(all(target_os = "linux", feature = "can")))]
             Uri::Can(_) => {
                 let _ = identifiers;
-                return Err(PortError::open(uri, super::WITHOUT_CAN));
+                return Err(PortError::open(uri, WITHOUT_CAN));
             }
             _ => return Err(PortError::open(uri, "it is no CAN bus")),
         };

@@ -1,6 +1,7 @@
 //! Pseudo terminals: a serial line without hardware, for a device that is a program.
 
-use super::{Bytes, PortError};
+use super::bytes::Bytes;
+use super::error::PortError;
 use std::time::Duration;
 
 /// Near end of a pseudo terminal; the far end is opened by its name, like a serial port.
@@ -14,7 +15,7 @@ pub struct Pty {
 
 #[cfg(unix)]
 mod unix {
-    use super::PortError;
+    use crate::port::error::PortError;
     use octant_base::serial::SerialPort;
     use std::path::PathBuf;
 

@@ -1,6 +1,7 @@
 //! Serial lines.
 
-use super::{Bytes, PortError};
+use super::bytes::Bytes;
+use super::error::PortError;
 use crate::Uri;
 use crate::uri::SerialAddress;
 use octant_base::serial::SerialPort;

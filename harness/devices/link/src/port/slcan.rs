@@ -3,7 +3,10 @@
 //! `tIIILDD…` is a classic frame, `dIIILDD…` an FD frame and `bIIILDD…` one whose data is faster; each
 //! ends with a carriage return. Adapters answer `\r` (done), `\x07` (not done) and `z\r` (sent).
 
-use super::{BusEvent, BusTrouble, Bytes, Frames, HeardFrame, PortError, SerialLine};
+use super::bytes::Bytes;
+use super::error::PortError;
+use super::frames::{BusEvent, BusTrouble, Frames, HeardFrame};
+use super::serial::SerialLine;
 use crate::Uri;
 use crate::uri::{self, SLCAN_BITRATES};
 use octant_wire::can::{BusFrame, CanVersion};

@@ -1,6 +1,7 @@
 //! CAN interfaces of the Linux kernel.
 
-use super::{BusEvent, BusTrouble, Frames, HeardFrame, PortError};
+use super::error::PortError;
+use super::frames::{BusEvent, BusTrouble, Frames, HeardFrame};
 use crate::Uri;
 use crate::uri::Can;
 use octant_wire::EndRole;

@@ -1,6 +1,7 @@
 //! TCP, as a line of bytes: for programs that have sockets and no datagrams.
 
-use super::{Bytes, PortError};
+use super::bytes::Bytes;
+use super::error::PortError;
 use crate::Uri;
 use crate::uri::HostPort;
 use octant_base::address::CONNECT_LIMIT;

@@ -1,9 +1,9 @@
 //! UDP, with one frame in each datagram.
 
-use super::seal::{OpenedSeal, SEAL_LEN, Seal, SealEnd};
-use super::secret::secret_in;
+use super::bytes::Bytes;
+use super::error::PortError;
+use super::seal::{OpenedSeal, SEAL_LEN, Seal, SealEnd, secret_in};
 use super::udp_stamps::ArrivalStamps;
-use super::{Bytes, PortError};
 use crate::uri::Udp;
 use octant_base::address::CONNECT_LIMIT;
 use std::io::ErrorKind;

@@ -148,10 +148,9 @@ impl Dialect {
     /// # Errors
     /// If the table is invalid: with file, and line or key.
     pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
-        let raw: Raw = toml::from_str(text).map_err(|error| {
-            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+        let raw: Raw = octant_toml_tree::read_as(text).map_err(|(line, message)| {
             let place = line.map_or_else(|| file.into(), |line| format!("{file}:{line}"));
-            Error::Dialect { place, what: error.message().trim().into() }
+            Error::Dialect { place, what: message.trim().into() }
         })?;
         let wrong =
             |key: &str, what: String| Error::Dialect { place: format!("{file}: {key}"), what };

@@ -4,7 +4,7 @@ use super::monotonic::Monotonic;
 use super::words::{GuestWord, HostWord, SharedLook, VERSION, line};
 use crate::button::knock;
 use crate::following::{packed, unpacked};
-use crate::{AxisStatus, Error, TableAxis, TableStatus, Told, Track, TrackPoint};
+use crate::{AxisStatus, Error, TableAxis, TableStatus, TableTraffic, Track, TrackPoint};
 use octant_sample::GimbalCommand;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
@@ -184,8 +184,8 @@ impl TableGuest {
 
     /// Counts of the looks so far; a guest commands nothing.
     #[must_use]
-    pub fn told(&self) -> Told {
-        Told { looks: self.shared.looks.load(Ordering::Relaxed), commands: 0 }
+    pub fn traffic(&self) -> TableTraffic {
+        TableTraffic { looks: self.shared.looks.load(Ordering::Relaxed), commands: 0 }
     }
 
     /// Tells the driving run that this one has ended: in order, or for a reason.

@@ -1,6 +1,6 @@
 //! A guest at a table on systems where it can't share the time of the driving run.
 
-use crate::{Error, TableAxis, Told, TrackPoint};
+use crate::{Error, TableAxis, TableTraffic, TrackPoint};
 use octant_sample::GimbalCommand;
 use std::time::{Duration, Instant};
 
@@ -54,7 +54,7 @@ impl NoTableGuest {
 
     /// Is never called.
     #[must_use]
-    pub fn told(&self) -> Told {
+    pub fn traffic(&self) -> TableTraffic {
         match *self {}
     }
 

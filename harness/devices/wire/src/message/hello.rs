@@ -1,6 +1,7 @@
 //! Hello messages, and the check that two ends fit together.
 
-use super::{Bye, EndRole, MessageKind, Reason};
+use super::kind::{EndRole, MessageKind};
+use super::link::{Bye, Reason};
 use crate::bytes::{Reader, Writer};
 use crate::{Text, Unreadable, VERSION};
 use core::fmt;

@@ -1,4 +1,7 @@
-//! Kinds of messages and their senders.
+//! Kinds of messages, their sizes and their senders.
+
+/// Bytes of the longest payload, a restart.
+pub const MAX_PAYLOAD_BYTES: usize = 244;
 
 /// Role of an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -118,7 +121,7 @@ impl MessageKind {
             Self::Aiding => 36,
             Self::Output => 132,
             Self::Parameters => 92,
-            Self::Restart => super::MAX_PAYLOAD_BYTES,
+            Self::Restart => MAX_PAYLOAD_BYTES,
             Self::End | Self::Ready => 4,
             Self::Heartbeat | Self::TimeRequest => 12,
             Self::TimeReply => 28,

@@ -1,6 +1,7 @@
 //! Messages about the link: heartbeat, status, clocks, and its end.
 
-use super::{MessageKind, StepNumber};
+use super::kind::MessageKind;
+use super::step::StepNumber;
 use crate::bytes::{Reader, Writer};
 use crate::{Text, Unreadable};
 

@@ -13,7 +13,7 @@ mod step;
 mod steps;
 
 pub use hello::{Agreement, Capabilities, EndLimits, Hello, SessionRefusal, StepPacing, agree};
-pub use kind::{EndRole, MessageKind};
+pub use kind::{EndRole, MAX_PAYLOAD_BYTES, MessageKind};
 pub use link::{
     Bye, ClockTime, DeviceStatus, EndCondition, Heartbeat, Offset, Reason, TimeReply, TimeRequest,
 };
@@ -23,9 +23,6 @@ pub use steps::{AidingMessage, End, OutputMessage, Ready, Restart, SampleMessage
 
 use crate::Unreadable;
 use crate::bytes::{Reader, Writer};
-
-/// Bytes of the longest payload, a restart.
-pub const MAX_PAYLOAD_BYTES: usize = 244;
 
 /// A message.
 #[derive(Clone, Copy, Debug, PartialEq)]

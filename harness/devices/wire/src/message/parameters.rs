@@ -1,6 +1,7 @@
 //! Parameters and their σ, in six segments, so that they never delay an output for long.
 
-use super::{MessageKind, StepNumber};
+use super::kind::MessageKind;
+use super::step::StepNumber;
 use crate::Unreadable;
 use crate::bytes::{Reader, Writer};
 use octant_sample::Parameters;

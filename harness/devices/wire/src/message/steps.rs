@@ -1,6 +1,7 @@
 //! Messages of a step: sample and aiding, output, end and restart.
 
-use super::{MessageKind, StepNumber};
+use super::kind::MessageKind;
+use super::step::StepNumber;
 use crate::Unreadable;
 use crate::bytes::{Reader, Writer};
 use octant_sample::parameters::PARAMETER_COUNT;

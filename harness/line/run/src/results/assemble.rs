@@ -15,9 +15,6 @@ use octant_evidence::disposition::Dispositions;
 use octant_recorder::event::FaultResult;
 use octant_report::counterfactual::in_words;
 use octant_report::{ReportData, ReportProvenance, SolutionSeries, StopLabel};
-use octant_requirements::Verdict;
-use octant_requirements::decision::{DecisionRule, NavigationContext, TimeDoubt};
-use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
 use octant_scenario::file_names::FileNames;
 use octant_scenario::{CalibrationSpec, MotionSpec, Scenario, SourceSpec};
@@ -31,6 +28,9 @@ use octant_score::summary::{
     Summary, WITH_FINDINGS, results,
 };
 use octant_turntable::TableAxis;
+use octant_verdict::Verdict;
+use octant_verdict::decision::{DecisionRule, NavigationContext, TimeDoubt};
+use octant_verdict::equipment::Day;
 use std::collections::BTreeMap;
 
 /// A run of one or two methods, scored and judged.

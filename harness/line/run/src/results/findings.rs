@@ -7,11 +7,11 @@ use octant_base::number;
 use octant_calibration::config::{Estimator, SwayNoise};
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
-use octant_requirements::Verdict;
 use octant_scenario::{CalibrationSpec, Method, Realtime, Scenario};
 use octant_score::judge::Finding;
 use octant_score::summary::PacingRecord;
 use octant_score::work::{RunPart, duration};
+use octant_verdict::Verdict;
 
 /// Lists the findings that affect the verdict of a run of one or two methods.
 #[must_use]

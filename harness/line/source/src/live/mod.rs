@@ -221,18 +221,18 @@ impl Source for LiveSource {
         let is_whole = broken.is_none() && self.delivered == self.total;
         let waited =
             table.as_ref().filter(|_| is_whole).and_then(|table| table.wait_for_others().err());
-        let told = table.as_ref().map(Table::told);
+        let summary = table.as_ref().map(Table::summary);
         // The table is stopped before anything else is done.
         let ended = table.and_then(|table| table.end(broken).err());
         let ended = waited.or(ended);
         let counters = self.sampler.counters();
         let protocol = self.instrument.speaks.told();
         let (instruments_clock, clock) = self.clock.told().unzip();
-        let looks_ms = told.as_ref().map(|told| told.figures.angles.time_within_ms);
+        let looks_ms = summary.as_ref().map(|summary| summary.figures.angles.time_within_ms);
         let (samples_times, time) =
             self.clock.dated(self.turning_radps.map(f64::to_degrees), looks_ms);
-        let (table, tables_angles, turntable) = match told {
-            Some(told) => (Some(told.figures), Some(told.angles), Some(told.table)),
+        let (table, tables_angles, turntable) = match summary {
+            Some(summary) => (Some(summary.figures), Some(summary.angles), Some(summary.table)),
             None => (None, None, None),
         };
         let bench = BenchRecord {

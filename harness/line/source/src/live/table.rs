@@ -57,10 +57,10 @@ impl Turns {
         }
     }
 
-    fn told(&self) -> octant_turntable::Told {
+    fn traffic(&self) -> octant_turntable::TableTraffic {
         match self {
-            Self::Driven(following) => following.told(),
-            Self::Elsewhere(guest) => guest.told(),
+            Self::Driven(following) => following.traffic(),
+            Self::Elsewhere(guest) => guest.traffic(),
         }
     }
 
@@ -102,7 +102,7 @@ struct Ages {
 }
 
 /// Summary of the table at the end of a run.
-pub(super) struct Told {
+pub(super) struct TableSummary {
     pub(super) table: String,
     pub(super) angles: String,
     pub(super) figures: BenchTable,
@@ -174,7 +174,7 @@ impl Table {
     }
 
     /// Summarises the table's run.
-    pub(super) fn told(&self) -> Told {
+    pub(super) fn summary(&self) -> TableSummary {
         let (drive, ages) = (&self.drive, &self.ages);
         let axis = |axis: TableAxis| {
             let limits = drive.settings.limits.of(axis);
@@ -185,7 +185,7 @@ impl Table {
                 rate_degps: limits.rate_radps.to_degrees(),
             }
         };
-        let went = self.turns.told();
+        let went = self.turns.traffic();
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let ms = |time: Duration| time.as_secs_f64() * 1e3;
         let mean_ms = ms(ages.sum) / ages.given.max(1) as f64;
@@ -232,7 +232,7 @@ impl Table {
                 ms(ages.within),
             )
         };
-        Told {
+        TableSummary {
             table: format!(
                 "{}, {}, {}, {}; {}{how}",
                 drive.port,

@@ -10,7 +10,7 @@ use octant_dispatch::bundle::contents::BundleContents;
 use octant_dispatch::bundle::error::BundleError;
 use octant_dispatch::bundle::unpack::unpack;
 use octant_dispatch::bundle::write::write;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::Path;
 
 impl From<BundleError> for Failure {

@@ -7,7 +7,7 @@ use octant_base::number::counted;
 use octant_evidence::Manifest;
 use octant_evidence::disposition::{self, Dispositions};
 use octant_evidence::signature;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::Path;
 
 pub(super) fn command(folder: &Path) -> Result<Verdict, Failure> {

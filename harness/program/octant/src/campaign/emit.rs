@@ -7,7 +7,7 @@ use crate::place::{self, CampaignPlace, Needs};
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
 use octant_dispatch::emit::{self, KubernetesVolume, SchedulerJob};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

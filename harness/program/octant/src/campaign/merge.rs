@@ -6,11 +6,11 @@ use crate::place::{CampaignPlace, Needs};
 use crate::terminal::print;
 use octant_base::number::counted;
 use octant_campaign::execute::Shard;
+use octant_campaign::merge::results;
 use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::Plan;
-use octant_campaign::results;
 use octant_campaign::store::CampaignResults;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 impl From<MergeError> for Failure {

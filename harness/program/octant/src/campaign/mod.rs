@@ -15,12 +15,12 @@ use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::execute::{ExecuteError, Shard};
+use octant_campaign::judge::status;
+use octant_campaign::judge::trace::{requirements_of, with_those_of_scenarios};
 use octant_campaign::plan::{Case, FILE_NAME, Plan, PlanError, PlanWritten};
-use octant_campaign::status;
 use octant_campaign::store::CampaignResults;
-use octant_campaign::trace::{requirements_of, with_those_of_scenarios};
-use octant_requirements::Verdict;
-use octant_requirements::trace::{TraceRow, UnknownRequirement};
+use octant_verdict::Verdict;
+use octant_verdict::trace::{TraceRow, UnknownRequirement};
 use planned::read;
 use std::path::{Path, PathBuf};
 
@@ -212,7 +212,7 @@ fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict,
     // The campaign's verdict is computed in one place: a case may fail in parts that no requirement
     // checks.
     let status = status::of(&plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
-    let trace = octant_campaign::trace::trace(&plan, &requirements, folder, status.cases)
+    let trace = octant_campaign::judge::trace::trace(&plan, &requirements, folder, status.cases)
         .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
     if let Some(out) = strictdoc {
         if out.exists() {
@@ -343,7 +343,7 @@ fn result(folder: &Path, id: &str) -> Result<Verdict, Failure> {
 /// Runs the cases that standard input names.
 fn work() -> Result<Verdict, Failure> {
     let (input, output) = (std::io::stdin().lock(), std::io::stdout().lock());
-    octant_campaign::work::work(input, output, std::io::stderr())
+    octant_campaign::execute::work::work(input, output, std::io::stderr())
         .map_err(|error| Failure::bench(error).failed())?;
     Ok(Verdict::Pass)
 }

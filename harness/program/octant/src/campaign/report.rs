@@ -11,7 +11,7 @@ use octant_campaign::report::file_names::PAGE;
 use octant_campaign::report::{CampaignReport, ReportError};
 use octant_campaign_pages::{campaign, evidence};
 use octant_evidence::discrepancy::counted;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 use std::time::SystemTime;
 

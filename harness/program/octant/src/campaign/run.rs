@@ -10,15 +10,17 @@ use crate::progress::watch_interrupts;
 use clap::Args;
 use octant_base::interrupt;
 use octant_base::number::counted;
+use octant_campaign::execute::selection::CaseSelection;
 use octant_campaign::execute::{
     CaseDone, ExecuteError, ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute,
 };
+use octant_campaign::judge::status;
+use octant_campaign::judge::stop::StopDecision;
+use octant_campaign::merge;
+use octant_campaign::merge::results;
 use octant_campaign::plan::Plan;
-use octant_campaign::selection::CaseSelection;
-use octant_campaign::stop::StopDecision;
 use octant_campaign::store::CampaignResults;
-use octant_campaign::{merge, results, status};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

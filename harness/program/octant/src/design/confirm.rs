@@ -13,7 +13,7 @@ use octant_design::largest::LargestErrors;
 use octant_design::lead_in::quick_round_s;
 use octant_design::report::SequenceDesign;
 use octant_design::search::{Found, SearchProblem};
-use octant_design::{DesignSetup, Rotation};
+use octant_design::{Rotation, Setup};
 use octant_run::paired::{MethodSide, SideResult, paired_runs};
 use octant_scenario::{Method, Scenario};
 use std::collections::VecDeque;
@@ -29,7 +29,7 @@ const REFERENCE: &str = "eight positions, sixteen moves";
 /// What is run.
 pub(super) struct Runs<'a> {
     pub(super) scenario: &'a Scenario,
-    pub(super) setup: &'a DesignSetup,
+    pub(super) setup: &'a Setup,
     pub(super) seeds: u64,
     /// Sample rate, as it was given.
     pub(super) rate: &'a str,

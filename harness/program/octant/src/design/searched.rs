@@ -8,7 +8,7 @@ use octant_base::interrupt;
 use octant_calibration::positions::{from_degrees, named};
 use octant_design::report::SequenceDesign;
 use octant_design::search::{SearchEffort, SearchError, SearchProblem, SearchState};
-use octant_design::{DesignError, DesignSetup, Judge, MeasureWeights, Rotation};
+use octant_design::{DesignError, Judge, MeasureWeights, Rotation, Setup};
 
 /// Duration of the eight positions whose drift `--shortest` keeps, s.
 const EIGHT_S: f64 = 4.0 * 3600.0;
@@ -38,7 +38,7 @@ pub(super) struct DesignWork {
 /// Designs for one rotation.
 pub(super) fn design(
     work: DesignWork,
-    setup: &DesignSetup,
+    setup: &Setup,
     problem: &SearchProblem,
     rotation: Rotation,
     states: &mut States<'_>,
@@ -93,7 +93,7 @@ pub(super) fn design(
 }
 
 /// Returns the measure of eight positions in 4 h with the scenario's own rotation.
-fn eight(setup: &DesignSetup, problem: &SearchProblem) -> Result<f64, Failure> {
+fn eight(setup: &Setup, problem: &SearchProblem) -> Result<f64, Failure> {
     let weights =
         MeasureWeights::new(setup, problem.measure).map_err(|error| failed(error.into()))?;
     let mut judge = Judge::new(setup, &weights);

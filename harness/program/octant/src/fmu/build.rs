@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_fmu_build::{BuildError, Options, build};
-use octant_requirements::Verdict;
 use octant_scenario::Scenario;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -5,10 +5,10 @@ use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_fmu_check::load::load;
 use octant_fmu_check::rules::Severity;
-use octant_fmu_check::{CheckReport, check, show};
+use octant_fmu_check::{Report, check, show};
 use octant_fmu_host::archive::ArchiveError;
 use octant_fmu_host::instance::OpenOptions;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -86,11 +86,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 }
 
 /// Checks one file; `loaded`: with the library loaded, and with a first step or without.
-fn one(
-    file: &Path,
-    loaded: Option<bool>,
-    options: &OpenOptions,
-) -> Result<CheckReport, ArchiveError> {
+fn one(file: &Path, loaded: Option<bool>, options: &OpenOptions) -> Result<Report, ArchiveError> {
     let mut checked = check(file)?;
     if let Some(with_step) = loaded.filter(|_| checked.can_be_loaded()) {
         load(&mut checked, options, with_step);
@@ -99,7 +95,7 @@ fn one(
 }
 
 /// Collects all reports, and the number of their findings.
-fn json(results: &[(&PathBuf, Result<CheckReport, ArchiveError>)]) -> serde_json::Value {
+fn json(results: &[(&PathBuf, Result<Report, ArchiveError>)]) -> serde_json::Value {
     let count = |severity| -> usize {
         results.iter().flat_map(|(_, result)| result).map(|report| report.count(severity)).sum()
     };

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 /// Hold an FMU for another process: for the program's own use.
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ mod run_source;
 use crate::failure::Failure;
 use crate::given::GivenOptions;
 use clap::{Args, Subcommand};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 /// Build, check and step FMUs.
 #[derive(Debug, Args)]

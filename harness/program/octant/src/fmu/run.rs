@@ -20,15 +20,15 @@ use octant_cosim::single::{Finished, SimulateError, Span, simulate};
 use octant_fmu_bind::settings::{Starts, ValueSettings};
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace};
-use octant_requirements::Verdict;
 use octant_scenario::{ScenarioError, setting_argument};
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Summary of a run.
 #[derive(Serialize)]
-struct Told {
+struct RunSummary {
     fmu: String,
     model: String,
     fmi: String,
@@ -255,7 +255,7 @@ fn tell(
     let chosen = kept.opening.interface;
     let scheduled = chosen == Some(Interface::ScheduledExecution);
     let exchange = chosen == Some(Interface::ModelExchange) || description.co_simulation.is_none();
-    let told = Told {
+    let summary = RunSummary {
         fmu: kept.fmu.display().to_string(),
         model: description.model_name.clone(),
         fmi: description.fmi_version.clone(),
@@ -282,42 +282,47 @@ fn tell(
         out: kept.out.map(Path::to_owned),
     };
     if kept.json {
-        return print_json(&told);
+        return print_json(&summary);
     }
-    let tool = match told.generation_tool.as_str() {
+    let tool = match summary.generation_tool.as_str() {
         "" => String::new(),
         tool => format!(", made by {tool}"),
     };
-    let steps = match told.step_s {
-        Some(step_s) => format!("{} of {step_s} s", counted(told.steps, "step", "steps")),
-        None => counted(told.steps, "time of ticks", "times of ticks"),
+    let steps = match summary.step_s {
+        Some(step_s) => format!("{} of {step_s} s", counted(summary.steps, "step", "steps")),
+        None => counted(summary.steps, "time of ticks", "times of ticks"),
     };
     let mut text = format!(
         "{}: {}, FMI {}, {}{tool}\n{steps} from {} s to {} s",
-        told.fmu, told.model, told.fmi, told.interface, told.start_s, told.reached_s
+        summary.fmu,
+        summary.model,
+        summary.fmi,
+        summary.interface,
+        summary.start_s,
+        summary.reached_s
     );
-    if told.steps > 0 {
+    if summary.steps > 0 {
         text += &format!(
             ", {:.3} µs per {} in {} process",
-            1e6 * told.wall_s / told.steps as f64,
+            1e6 * summary.wall_s / summary.steps as f64,
             if scheduled { "time" } else { "step" },
-            if told.process == "own" { "its own" } else { "this" }
+            if summary.process == "own" { "its own" } else { "this" }
         );
     }
-    text += match (told.terminated, told.interrupted) {
+    text += match (summary.terminated, summary.interrupted) {
         (true, _) => "; then the FMU ended the simulation\n",
         (_, true) => "; then the run was interrupted\n",
         _ => "\n",
     };
-    if !told.left_out.is_empty() {
+    if !summary.left_out.is_empty() {
         text += &format!(
             "not recorded, because they have no value between ticks: {}\n",
-            told.left_out.join(", ")
+            summary.left_out.join(", ")
         );
     }
-    if let Some(out) = &told.out {
-        let rows = counted(told.steps + 1, "row", "rows");
-        let columns = counted(told.outputs.len(), "output", "outputs");
+    if let Some(out) = &summary.out {
+        let rows = counted(summary.steps + 1, "row", "rows");
+        let columns = counted(summary.outputs.len(), "output", "outputs");
         text += &format!("{rows} of time and {columns} in {}\n", out.display());
     }
     print(&text)

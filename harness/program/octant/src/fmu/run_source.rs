@@ -6,17 +6,17 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use octant_base::control::Control;
 use octant_base::number::counted;
-use octant_requirements::Verdict;
 use octant_run::run_as_far_as_it_goes;
 use octant_run::{Ended, StreamKeeping};
 use octant_scenario::{Method, Scenario, setting_argument};
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Summary of a run.
 #[derive(Serialize)]
-struct Told {
+struct RunSummary {
     fmu: String,
     scenario: String,
     samples: u64,
@@ -63,7 +63,7 @@ pub(super) fn command(kept: &SharedRunOptions<'_>, scenario: &Path) -> Result<Ve
     });
     let run = run.map_err(|error| Failure::from(error).failed())?;
     let refused = run.calibration.as_ref().and_then(|calibration| calibration.refused.clone());
-    let told = Told {
+    let summary = RunSummary {
         fmu: fmu.display().to_string(),
         scenario: scenario.title.clone(),
         samples: run.recorder.epochs,
@@ -83,12 +83,12 @@ pub(super) fn command(kept: &SharedRunOptions<'_>, scenario: &Path) -> Result<Ve
         out: out.map(Path::to_owned),
     };
     if json {
-        print_json(&told)?;
+        print_json(&summary)?;
     } else {
-        print(&text(&told))?;
+        print(&text(&summary))?;
     }
     if let Some(error) = run.bench.broken {
-        return Err(Failure::bench(format!("failed to run {}: {error}", told.fmu)));
+        return Err(Failure::bench(format!("failed to run {}: {error}", summary.fmu)));
     }
     Ok(match run.ended {
         Ended::Refused | Ended::Misbehaved => Verdict::Fail,
@@ -138,25 +138,25 @@ fn overrides(
     Ok(all)
 }
 
-fn text(told: &Told) -> String {
+fn text(summary: &RunSummary) -> String {
     let mut text = format!(
         "{} as the core of {}: {}, {}",
-        told.fmu,
-        told.scenario,
-        counted(told.samples, "sample", "samples"),
-        told.ended
+        summary.fmu,
+        summary.scenario,
+        counted(summary.samples, "sample", "samples"),
+        summary.ended
     );
-    if let Some(reason) = &told.refused {
+    if let Some(reason) = &summary.refused {
         text += &format!(" ({reason})");
     }
-    if told.samples > 0 {
-        text += &format!(", {:.3} µs per sample", 1e6 * told.wall_s / told.samples as f64);
+    if summary.samples > 0 {
+        text += &format!(", {:.3} µs per sample", 1e6 * summary.wall_s / summary.samples as f64);
     }
-    if let Some(nis) = told.nis_mean {
+    if let Some(nis) = summary.nis_mean {
         text += &format!("\nNIS {nis:.3}");
     }
-    text += &format!("\nstream hash {}\n", told.stream_hash);
-    if let Some(out) = &told.out {
+    text += &format!("\nstream hash {}\n", summary.stream_hash);
+    if let Some(out) = &summary.out {
         text += &format!("{}\n", out.display());
     }
     text

@@ -8,10 +8,10 @@ use octant_base::display::{DisplayUnits, UnitChoice};
 use octant_base::number::{counted, significant};
 use octant_campaign::against::{Against, EnsembleComparison, Selection, against};
 use octant_campaign::plan::{FILE_NAME, Plan};
-use octant_campaign::sites;
+use octant_campaign::report::sites;
 use octant_observe::ensemble::{DriftBand, Ensemble, ErrorBand, SolutionBands, ensemble};
-use octant_requirements::Verdict;
 use octant_scenario::{Method, Scenario};
+use octant_verdict::Verdict;
 use std::fmt::Write as _;
 use std::path::Path;
 

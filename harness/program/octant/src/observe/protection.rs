@@ -8,9 +8,9 @@ use octant_calibration::covariance::PARAMETERS;
 use octant_observe::covariance::state_name;
 use octant_observe::ensemble::state_unit;
 use octant_observe::protection::{Protection, protection};
-use octant_requirements::Verdict;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_scenario::Method;
+use octant_verdict::Verdict;
 use serde::Serialize;
 
 /// Probabilities that the test misses a jump, and the quantiles of a normal variable.

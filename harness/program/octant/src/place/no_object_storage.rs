@@ -1,11 +1,11 @@
 //! Stand-in for object storage in a program that was built without it.
 
-use super::Needs;
+use super::needs::Needs;
 use crate::failure::Failure;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_dispatch::bundle::contents::BundleContents;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::Path;
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
 //! Campaigns on object storage.
 
-use super::Needs;
+use super::needs::Needs;
 use crate::failure::Failure;
 use crate::terminal::{note, print};
 use octant_base::control::SetAtEnd;
@@ -10,12 +10,12 @@ use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_dispatch::bundle::contents::BundleContents;
 use octant_dispatch::bundle::write::write;
-use octant_requirements::Verdict;
-use octant_storage::layout::BUNDLE;
-use octant_storage::{
+use octant_dispatch::storage::layout::BUNDLE;
+use octant_dispatch::storage::{
     PutOutcome, SegmentUploads, Storage, StorageAddress, StorageError, StorageOptions,
     UploadLimits, WorkFolder, WorkScope,
 };
+use octant_verdict::Verdict;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! `octant requirements measures`: every measure that a requirement can have.
 
-use octant_requirements::measures::{MeasureEntry, MeasureNeed, all};
 use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 use octant_sample::parameters::{NAMES, ParameterGroup};
+use octant_verdict::measures::{MeasureEntry, MeasureNeed, all};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

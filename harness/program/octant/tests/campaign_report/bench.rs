@@ -3,7 +3,7 @@
 use crate::common::program::program;
 use crate::common::results;
 use octant_base::control::Control;
-use octant_campaign::case;
+use octant_campaign::execute::case;
 use octant_campaign::plan::{Case, Plan};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -2,10 +2,12 @@
 //! honest ones beside them.
 
 use super::bench::{Bench, SCENARIO, check};
+use octant_campaign::judge::status;
+use octant_campaign::judge::stop::StopDecision;
+use octant_campaign::merge;
+use octant_campaign::merge::results;
 use octant_campaign::plan::{Case, Plan};
-use octant_campaign::stop::StopDecision;
-use octant_campaign::{merge, results, status};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

@@ -5,7 +5,7 @@ use crate::common::results;
 use octant_campaign::plan::Plan;
 use octant_campaign::report::CampaignReport;
 use octant_evidence::discrepancy::Discrepancy;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -191,7 +191,7 @@ fn what_is_not_of_the_plan_is_refused_and_nothing_is_written() {
     assert!(status == Some(2) && said.contains("no/such/key"), "{said}");
     // Table from earlier, when there were fewer cases.
     put(&out, &plan.cases[0], &synthetic(&plan, 0, &plan.cases[0]));
-    octant_campaign::results::tables(&plan, &out, 0..79, |table| {
+    octant_campaign::merge::results::tables(&plan, &out, 0..79, |table| {
         octant_campaign::merge::merged(&out, table)
     })
     .unwrap();

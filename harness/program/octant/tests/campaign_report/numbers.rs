@@ -3,7 +3,7 @@
 use super::bench::{Bench, CAMPAIGN, check, drawn, final_nmi, rate};
 use crate::common::results;
 use octant_base::number::significant;
-use octant_campaign::factor_values::FactorValue;
+use octant_campaign::plan::factor_values::FactorValue;
 use serde_json::{Value, json};
 
 /// Computes a percentile, definition 7 of Hyndman and Fan.

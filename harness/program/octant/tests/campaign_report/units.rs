@@ -3,7 +3,7 @@
 use super::bench::{Bench, CAMPAIGN, REQUIREMENTS, SCENARIO, drawn, final_nmi, rate};
 use super::numbers::percentile;
 use octant_base::number::significant;
-use octant_campaign::factor_values::FactorValue;
+use octant_campaign::plan::factor_values::FactorValue;
 use octant_campaign::report::CampaignReport;
 use serde_json::json;
 

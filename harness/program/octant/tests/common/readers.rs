@@ -1,8 +1,8 @@
 //! Every reader of a run's folder: each folder that a test writes has to be readable by all of them.
 
-use octant_diff::side::DiffSide;
+use octant_diff::side::Side;
 use octant_evidence::manifest::Manifest;
-use octant_evidence::{ended, inside};
+use octant_evidence::{ended, statements};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -13,10 +13,10 @@ pub fn read(folder: &Path) {
     let manifest = Manifest::read(folder).unwrap_or_else(|error| panic!("{shown}: {error}"));
     let differences = manifest.verify(folder).unwrap();
     assert!(differences.is_empty(), "{shown}: {differences:?}");
-    let inside = inside::of_run(folder, &manifest);
+    let inside = statements::of_run(folder, &manifest);
     assert!(inside.contradictions.is_empty(), "{shown}: {:?}", inside.contradictions);
     // A system of FMUs has a summary of its own, which has no requirements to judge anew.
-    let text = std::fs::read_to_string(folder.join(inside::SUMMARY)).unwrap();
+    let text = std::fs::read_to_string(folder.join(statements::SUMMARY)).unwrap();
     if serde_json::from_str::<serde_json::Value>(&text).unwrap().get("system").is_some() {
         return;
     }
@@ -26,7 +26,7 @@ pub fn read(folder: &Path) {
     if !folder.join("recording.mcap").is_file() {
         return;
     }
-    let side = DiffSide::read(folder).unwrap_or_else(|error| panic!("{shown}: {error}"));
+    let side = Side::read(folder).unwrap_or_else(|error| panic!("{shown}: {error}"));
     let difference = octant_diff::runs(&side, &side).unwrap();
     assert!(difference.equal, "{shown} differs from itself");
 }

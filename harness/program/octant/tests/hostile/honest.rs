@@ -1,8 +1,8 @@
 //! Honest units in other implementations: none of them causes a finding.
 
 use super::unit::{CALIBRATION, HONEST, Over, SECOND, Turn, Twist, run, run_of, scenario};
-use octant_requirements::Verdict;
 use octant_sample::{Health, Mode};
+use octant_verdict::Verdict;
 use std::f64::consts::TAU;
 
 fn passes(about: &str, over: Over, twist: Twist) {

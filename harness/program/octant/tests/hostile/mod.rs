@@ -15,7 +15,7 @@ mod sessions;
 mod studies;
 mod unit;
 
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 /// End of an attack: with a verdict, or before there is one.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Page of all attacks, generated from the tests themselves.
 
 use super::{Row, answers, bench, fmu, honest, sessions};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;

@@ -244,7 +244,7 @@ pub fn check(about: &str, ends: &super::Ends, found: Result<Summary, String>) {
     let (status, reasons) = match found {
         Ok(summary) => (summary.verdict.exit_code(), summary.reasons.join("; ")),
         // A run that can't begin, or whose device goes away without a message.
-        Err(reason) => (octant_requirements::Verdict::Error.exit_code(), reason),
+        Err(reason) => (octant_verdict::Verdict::Error.exit_code(), reason),
     };
     assert_eq!(status, ends.status, "{about}: {reasons}");
     assert!(

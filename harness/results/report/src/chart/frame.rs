@@ -1,6 +1,6 @@
 //! Scales of a static drawing, and its parts as SVG.
 
-use super::model::{Band, Chart, ChartLine};
+use super::model::{Band, Chart, Line};
 use super::ticks::{
     decades, exponents, hour_ticks, is_round, nice_ticks, round, span, thinned, whole_ticks,
 };
@@ -144,7 +144,7 @@ impl Frame {
         }
     }
 
-    pub(super) fn pairs(&self, lines: &[ChartLine]) -> Markup {
+    pub(super) fn pairs(&self, lines: &[Line]) -> Markup {
         let first = lines.first().map_or(&[][..], |l| &l.points[..]);
         html! {
             @for (i, [x, _]) in first.iter().enumerate() {
@@ -160,7 +160,7 @@ impl Frame {
     }
 
     /// Draws a dot at every point of a line.
-    pub(super) fn dots(&self, line: &ChartLine) -> Markup {
+    pub(super) fn dots(&self, line: &Line) -> Markup {
         html! {
             @for [x, y] in line.points.iter().filter(|p| p[1].is_finite()) {
                 circle class={ "dot " (line.role.class()) } cx=(round(self.px(*x))) cy=(round(self.py(*y))) r="3" {}

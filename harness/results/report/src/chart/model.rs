@@ -2,7 +2,7 @@
 
 /// Meaning of a line or band: the style sheet assigns colour and dash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ChartRole {
+pub enum Role {
     /// The method under test.
     Primary,
     /// Method of comparison.
@@ -13,7 +13,7 @@ pub enum ChartRole {
     Reference,
 }
 
-impl ChartRole {
+impl Role {
     /// True if the points of a line with dots are marked: those that were found, not the expected ones.
     pub(super) const fn has_dots(self) -> bool {
         matches!(self, Self::Primary | Self::Baseline)
@@ -31,11 +31,11 @@ impl ChartRole {
 
 /// A line.
 #[derive(Clone, Debug)]
-pub struct ChartLine {
+pub struct Line {
     /// Name in the legend.
     pub label: String,
     /// Meaning, which sets colour and dash.
-    pub role: ChartRole,
+    pub role: Role,
     /// Points in order of x; NaN breaks the line.
     pub points: Vec<[f64; 2]>,
 }
@@ -46,7 +46,7 @@ pub struct Band {
     /// Name in the legend.
     pub label: String,
     /// Meaning, which sets colour and dash.
-    pub role: ChartRole,
+    pub role: Role,
     /// x, lower, upper.
     pub points: Vec<[f64; 3]>,
 }
@@ -78,7 +78,7 @@ pub struct Chart {
     /// Bands, drawn first.
     pub bands: Vec<Band>,
     /// Lines.
-    pub lines: Vec<ChartLine>,
+    pub lines: Vec<Line>,
     /// Horizontal lines with a label.
     pub levels: Vec<(f64, String)>,
     /// Length of a bracket on the x axis with its label: a reference period.

@@ -3,7 +3,7 @@
 //! Columns are single-precision numbers, little-endian, in base64. A column that several lines share
 //! stands once.
 
-use super::model::{Band, Chart, ChartLine};
+use super::model::{Band, Chart, Line};
 use super::ticks::thinned;
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ pub(super) fn numbers(chart: &Chart) -> String {
     let mut columns = Columns::default();
     let mut lines = String::new();
     for line in &chart.lines {
-        let ChartLine { label, role, points } = line;
+        let Line { label, role, points } = line;
         let points = thinned(points, COLUMNS);
         let x = columns.index(points.iter().map(|p| p[0]));
         let y = columns.index(points.iter().map(|p| p[1]));

@@ -1,12 +1,12 @@
 //! Verdict as `junit.xml` for CI systems.
 
-mod document;
+mod xml;
 
-pub use document::{JunitCase, JunitCases, JunitSuite, document, write_document};
+pub use xml::{JunitCase, JunitCases, JunitSuite, document, write_document};
 
 use super::summary::{FaultResult, Summary};
 use super::verdict::RequirementResult;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::io;
 
 /// Writes the run as JUnit XML: one suite named after the scenario, one case for each requirement with

@@ -1,12 +1,12 @@
 //! A summary, and how it is judged.
 
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Comparison, Verdict};
 use octant_score::judge::{Finding, judge};
 use octant_score::summary::{
     CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel, NavigationScore,
     RadialScore, SCHEMA, Summary,
 };
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{Comparison, Verdict};
 use std::collections::BTreeMap;
 
 pub(crate) fn summary() -> Summary {

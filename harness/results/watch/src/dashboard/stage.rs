@@ -4,7 +4,7 @@ use super::style::{ACTS, ALERT, GOOD};
 use crate::follow::{Follow, Stage};
 use crate::plain;
 use octant_base::number::significant;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use ratatui::style::{Modifier, Style};
 
 /// Describes the progress of the run, with its speed or its verdict.

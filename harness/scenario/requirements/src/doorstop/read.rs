@@ -2,11 +2,12 @@
 
 use super::yaml::{Node, Yaml, parse};
 use super::{DoorstopFile, HEAD, SETTINGS, STANDARD, TITLE};
-use crate::document::{control, normal};
-use crate::error::{Imported, Note, RequirementsError, RequirementsProblem, listed};
+use crate::error::{Imported, Note, listed};
 use crate::foreign::{Assembly, Attribute, FOREIGN_ID, NAME, Object, Place, TEXT};
 use crate::mapping::{DeclaredType, Mapping};
-use crate::requirement::{AttributeKind, Parent};
+use octant_verdict::requirement::{AttributeKind, Parent};
+use octant_verdict::text::{control, normal};
+use octant_verdict::{RequirementsError, RequirementsProblem};
 use std::rc::Rc;
 
 /// Reads the files of a folder of Doorstop: `.doorstop.yml` and the items, by their names.

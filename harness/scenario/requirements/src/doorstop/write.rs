@@ -3,10 +3,10 @@
 use super::yaml::{block, quoted};
 use super::{DoorstopFile, HEAD, SETTINGS, STANDARD, TITLE};
 use crate::error::ExportError;
-use crate::fields::own_fields;
-use crate::file::misfit;
 use crate::hierarchy::{Step, steps};
-use crate::requirement::{AttributeKind, Requirement, Requirements};
+use octant_verdict::fields::own_fields;
+use octant_verdict::file::misfit;
+use octant_verdict::requirement::{AttributeKind, Requirement, Requirements};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! Definitions of attributes, which objects of several types can have in common.
 
-use crate::file::misfit;
-use crate::requirement::{AttributeKind, Definition, Requirement};
+use octant_verdict::file::misfit;
+use octant_verdict::requirement::{AttributeKind, Definition, Requirement};
 
 /// Definitions in the order of their first use.
 #[derive(Default)]

@@ -8,13 +8,14 @@ mod object;
 
 pub(crate) use object::{Attribute, Object, Role};
 
-use crate::error::{Imported, Note, RequirementsError, RequirementsProblem, listed};
-use crate::fields;
+use crate::error::{Imported, Note, listed};
 use crate::mapping::{IDENTIFIER, Mapping, RequirementPart};
-use crate::requirement::{
+use definitions::Definitions;
+use octant_verdict::fields;
+use octant_verdict::requirement::{
     ForeignAttribute, FormattedText, Parent, Requirement, Requirements, Verification,
 };
-use definitions::Definitions;
+use octant_verdict::{RequirementsError, RequirementsProblem};
 use std::collections::{HashMap, HashSet};
 
 /// Names of ReqIF that the writer gives to parts of a requirement.

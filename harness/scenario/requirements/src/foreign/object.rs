@@ -1,7 +1,7 @@
 //! An object of another tool.
 
 use crate::mapping::{IDENTIFIER, Mapping, RequirementPart};
-use crate::requirement::AttributeKind;
+use octant_verdict::requirement::AttributeKind;
 
 /// An attribute of an object; it has a value.
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! Checks a mapping against a file: every name in it has to exist there.
 
 use super::{IDENTIFIER, Mapping, Named, Names, RequirementPart};
-use crate::error::{RequirementsError, RequirementsProblem, suggestion};
+use octant_base::names::suggestion;
+use octant_verdict::{RequirementsError, RequirementsProblem};
 
 /// A type of objects in a file of another tool.
 #[derive(Clone, Debug, Default)]
@@ -51,7 +52,7 @@ fn missing(named: &Named, what: &str, known: &[&str]) -> RequirementsProblem {
             unique.push(name);
         }
     }
-    let known = suggestion(&named.name, &unique);
+    let known = suggestion(&named.name, unique.iter().copied(), "known");
     let message = format!("the file has no {what} {:?}, {known}", named.name);
     RequirementsProblem::new(named.place, named.path.clone(), message)
 }

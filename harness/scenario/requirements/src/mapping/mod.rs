@@ -9,7 +9,7 @@ mod read;
 pub(crate) use check::DeclaredType;
 pub use read::{SCHEMA, read};
 
-use crate::fields;
+use octant_verdict::fields;
 use std::collections::HashMap;
 
 /// A part of a requirement that an attribute can hold.

@@ -20,11 +20,10 @@
 //! ```
 
 use super::{Mapping, Named, Names, RequirementPart};
-use crate::document::{Lines, Problems, Reader, describe};
-use crate::error::RequirementsError;
-use std::cell::RefCell;
-use toml::Spanned;
-use toml::de::DeValue;
+use octant_base::names::suggestion;
+use octant_toml_tree::{Node, Value};
+use octant_verdict::RequirementsError;
+use octant_verdict::table::{Problems, Reader, position};
 
 /// Version of the schema of mapping files.
 pub const SCHEMA: i64 = 1;
@@ -34,12 +33,12 @@ pub const SCHEMA: i64 = 1;
 /// # Errors
 /// All problems, each with line, column and field.
 pub fn read(text: &str, file: &str) -> Result<Mapping, RequirementsError> {
-    let problems = Problems { lines: Lines::new(text), all: RefCell::default() };
-    let table = problems.table(text, file)?;
-    let root = Reader::new(table.get_ref(), 0, "", &problems);
+    let problems = Problems::new(text);
+    let table = problems.table(file)?;
+    let root = Reader::root(&table, &problems);
     let mut found = Mapping { file: file.to_owned(), ..Mapping::default() };
     // A newer schema may have other keys: unknown ones in it are not reported.
-    if crate::document::schema(&root, SCHEMA) {
+    if octant_verdict::table::schema(&root, SCHEMA) {
         root.known(&["schema", "attributes", "values", "types", "informative"]);
         found.all = names(&root);
         types(&root, &mut found);
@@ -58,19 +57,22 @@ fn part(table: &Reader<'_>, key: &str) -> Option<RequirementPart> {
     let part = RequirementPart::ALL.into_iter().find(|part| part.name() == key);
     if part.is_none() {
         let known = RequirementPart::ALL.map(RequirementPart::name);
-        table.problem(key, format!("unknown key, {}", crate::error::suggestion(key, &known)));
+        table.problem(
+            key,
+            format!("unknown key, {}", suggestion(key, known.iter().copied(), "known")),
+        );
     }
     part
 }
 
 /// A text, or several, with their places.
-fn named(table: &Reader<'_>, key: &str, value: &Spanned<DeValue<'_>>) -> Vec<Named> {
-    let one = |value: &Spanned<DeValue<'_>>| {
+fn named(table: &Reader<'_>, key: &str, value: &Node) -> Vec<Named> {
+    let one = |value: &Node| {
         let name = table.text_of(key, value)?;
-        Some(Named { name, place: table.place(value.span().start), path: table.path_of(key) })
+        Some(Named { name, place: position(&value.place), path: table.path_of(key) })
     };
-    match value.get_ref() {
-        DeValue::Array(entries) => entries.iter().filter_map(one).collect(),
+    match &value.value {
+        Value::Array(entries) => entries.iter().filter_map(one).collect(),
         _ => one(value).into_iter().collect(),
     }
 }
@@ -81,7 +83,7 @@ fn names(table: &Reader<'_>) -> Names {
         for (key, value) in attributes.entries() {
             let Some(part) = part(&attributes, key) else { continue };
             let all = named(&attributes, key, value);
-            if all.is_empty() && matches!(value.get_ref(), DeValue::Array(_)) {
+            if all.is_empty() && matches!(value.value, Value::Array(_)) {
                 attributes.problem(key, "found no name, expected the name of an attribute");
             }
             names.attributes.insert(part, all);
@@ -96,7 +98,7 @@ fn names(table: &Reader<'_>) -> Names {
                 if let Some(expected) = misvalued(part, &to) {
                     of.problem(from, format!("found {to:?}, expected {expected}"));
                 }
-                let (place, path) = (of.place(value.span().start), of.path_of(from));
+                let (place, path) = (position(&value.place), of.path_of(from));
                 all.push((Named { name: from.to_owned(), place, path }, to));
             }
             names.values.insert(part, all);
@@ -123,7 +125,7 @@ fn types(root: &Reader<'_>, found: &mut Mapping) {
     for (key, value) in types.entries() {
         let Some(table) = types.table(key) else { continue };
         table.known(&["attributes", "values"]);
-        let place = types.place(value.span().start);
+        let place = position(&value.place);
         let name = Named { name: key.to_owned(), place, path: types.path_of(key) };
         found.types.push((name, names(&table)));
     }
@@ -136,15 +138,15 @@ fn informative(root: &Reader<'_>, found: &mut Mapping) {
         found.informative_types = Some(named(&table, "types", value));
     }
     let Some(value) = table.get("values") else { return };
-    if !matches!(value.get_ref(), DeValue::Table(_)) {
-        let found = describe(value.get_ref());
+    if !matches!(value.value, Value::Table(_)) {
+        let found = table.describe(value);
         table.problem("values", format!("found {found}, expected a table of attributes"));
         return;
     }
     let Some(values) = table.table("values") else { return };
-    let of = |(key, value): (&str, &Spanned<DeValue<'_>>)| {
+    let of = |(key, value): (&str, &Node)| {
         let name = key.to_owned();
-        let (place, path) = (values.place(value.span().start), values.path_of(key));
+        let (place, path) = (position(&value.place), values.path_of(key));
         (Named { name, place, path }, named(&values, key, value))
     };
     found.informative_values = Some(values.entries().into_iter().map(of).collect());

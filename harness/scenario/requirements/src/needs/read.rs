@@ -3,12 +3,14 @@
 use super::json::{NeedsFile, NeedsVersion};
 use super::schema::NeedSchema;
 use super::{COMPUTED, CORE, FORMAT, LINKS, NO_REQUIREMENTS, PARENT_NEEDS, REQ, VERSION};
-use crate::document::{control, normal};
-use crate::error::{Imported, Note, RequirementsError, RequirementsProblem, listed, suggestion};
+use crate::error::{Imported, Note, listed};
 use crate::foreign::{Assembly, Attribute, FOREIGN_ID, NAME, Object, Place, Role, TEXT};
 use crate::mapping::{DeclaredType, Mapping};
-use crate::requirement::{AttributeKind, Parent};
 use crate::sdoc::markup;
+use octant_base::names::suggestion;
+use octant_verdict::requirement::{AttributeKind, Parent};
+use octant_verdict::text::{control, normal};
+use octant_verdict::{RequirementsError, RequirementsProblem};
 use serde_json::Value;
 use std::collections::{BTreeSet, HashSet};
 use std::rc::Rc;
@@ -76,7 +78,7 @@ fn current(current: String, file: NeedsFile) -> Result<Current, String> {
     let mut versions = file.versions.unwrap_or_default().0;
     let Some(at) = versions.iter().position(|(name, _)| *name == current) else {
         let names: Vec<&str> = versions.iter().map(|(name, _)| name.as_str()).collect();
-        let known = suggestion(&current, &names);
+        let known = suggestion(&current, names.iter().copied(), "known");
         return Err(format!(
             "current_version is {current:?}, which isn't among \"versions\", {known}"
         ));
@@ -306,7 +308,8 @@ impl<'a> Reader<'a> {
             return Err(format!("{name}, which has the control character {c:?}"));
         }
         // An older or newer program may have written other values than the schema says.
-        let kind = schema.kind(name).filter(|kind| crate::file::misfit(kind, &texts).is_none());
+        let kind =
+            schema.kind(name).filter(|kind| octant_verdict::file::misfit(kind, &texts).is_none());
         let kind = kind.unwrap_or(natural);
         Ok((!texts.is_empty()).then(|| attribute(self.named(name), kind, texts, line)))
     }

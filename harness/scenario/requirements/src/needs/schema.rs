@@ -1,7 +1,7 @@
 //! The JSON schema of a need: types of extra fields, and fields of links.
 
 use super::{LINKS, PARENT_NEEDS};
-use crate::requirement::AttributeKind;
+use octant_verdict::requirement::AttributeKind;
 use serde_json::{Map, Value, json};
 
 /// Schema of the needs of a version.

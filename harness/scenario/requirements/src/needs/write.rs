@@ -3,10 +3,10 @@
 use super::schema::{links, property};
 use super::{ESCAPED, FORMAT, LINKS, LISTS, PARENT_NEEDS, REQ, VERSION};
 use crate::error::ExportError;
-use crate::fields::own_fields;
-use crate::file::misfit;
-use crate::requirement::{AttributeKind, Requirement, Requirements};
 use crate::sdoc::markup;
+use octant_verdict::fields::own_fields;
+use octant_verdict::file::misfit;
+use octant_verdict::requirement::{AttributeKind, Requirement, Requirements};
 use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 

@@ -4,10 +4,11 @@
 //! sizes that it states don't matter.
 
 use super::read::read_all;
-use crate::document::decode;
-use crate::error::{Attachment, ExportError, Imported, Note, RequirementsError};
+use crate::encoding::decode;
+use crate::error::{Attachment, ExportError, Imported, Note};
 use crate::mapping::Mapping;
-use crate::requirement::Requirements;
+use octant_verdict::RequirementsError;
+use octant_verdict::requirement::Requirements;
 use std::io::{Cursor, Read as _, Write as _};
 use zip::ZipArchive;
 use zip::result::ZipError;

@@ -1,8 +1,8 @@
 //! Columns of the object types: the attributes of all requirements.
 
 use super::{FOREIGN_ID, NAME, TEXT};
-use crate::fields::{ALL, own_fields};
-use crate::requirement::{AttributeKind, Requirements};
+use octant_verdict::fields::{ALL, own_fields};
+use octant_verdict::requirement::{AttributeKind, Requirements};
 
 /// A column of every object type.
 pub(super) struct Column {

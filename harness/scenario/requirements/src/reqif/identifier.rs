@@ -1,6 +1,6 @@
 //! Identifiers of ReqIF objects.
 
-use crate::requirement::Requirement;
+use octant_verdict::requirement::Requirement;
 
 /// Makes an identifier from the id for people: letters, digits, `-` and `.` stay, other characters
 /// become their number.

@@ -2,11 +2,12 @@
 
 use super::NAMESPACE;
 use super::types::{Types, Wrong, child, identifier, reference, within};
-use crate::document::{control, normal};
-use crate::error::{Note, RequirementsError, RequirementsProblem};
+use crate::error::Note;
 use crate::foreign::{Attribute, Object};
 use crate::mapping::DeclaredType;
 use crate::xhtml;
+use octant_verdict::text::{control, normal};
+use octant_verdict::{RequirementsError, RequirementsProblem};
 use roxmltree::{Document, Node};
 use std::collections::HashMap;
 use std::rc::Rc;

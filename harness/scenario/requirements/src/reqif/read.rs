@@ -2,10 +2,11 @@
 
 use super::identifier::identifier;
 use super::parse::{ParsedFile, Relation, parse};
-use crate::error::{Imported, Note, RequirementsError, RequirementsProblem, listed};
+use crate::error::{Imported, Note, listed};
 use crate::foreign::{Assembly, Object, Place, Role};
 use crate::mapping::Mapping;
-use crate::requirement::Parent;
+use octant_verdict::requirement::Parent;
+use octant_verdict::{RequirementsError, RequirementsProblem};
 use std::collections::{HashMap, HashSet};
 
 /// Reads a `.reqif` with the usual names of attributes.

@@ -1,6 +1,6 @@
 //! Types of a ReqIF file: enumerations, and attributes of objects.
 
-use crate::requirement::AttributeKind;
+use octant_verdict::requirement::AttributeKind;
 use roxmltree::Node;
 use std::collections::HashMap;
 

@@ -1,6 +1,6 @@
 //! Grammar of a document: the fields of its nodes.
 
-use crate::requirement::{AttributeKind, Definition};
+use octant_verdict::requirement::{AttributeKind, Definition};
 
 /// A field of the grammar.
 #[derive(Clone, Debug, PartialEq, Eq)]

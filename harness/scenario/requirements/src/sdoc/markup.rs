@@ -5,9 +5,9 @@
 //! its texts are plain. In one whose author chose reStructuredText his texts are that, and the fields
 //! that Octant makes are escaped.
 
-use crate::fields::{MEASURE, TESTS};
+use octant_verdict::fields::{MEASURE, TESTS};
 
-/// Option of the document, by its name in [`crate::Requirements::document`].
+/// Option of the document, by its name in [`octant_verdict::Requirements::document`].
 pub(crate) const OPTION: &str = "OPTIONS.MARKUP";
 /// Texts that are shown as they are.
 pub(crate) const PLAIN: &str = "Text";

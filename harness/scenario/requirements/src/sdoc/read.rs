@@ -3,12 +3,13 @@
 use super::grammar::{Field, kind};
 use super::markup;
 use super::{HEAD, OPTIONS, REQUIREMENT};
-use crate::document::{control, normal};
-use crate::error::{Imported, Note, RequirementsError, RequirementsProblem};
-use crate::fields as field;
-use crate::requirement::{
+use crate::error::{Imported, Note};
+use octant_verdict::fields as field;
+use octant_verdict::requirement::{
     AttributeKind, ForeignAttribute, Parent, Requirement, Requirements, Verification,
 };
+use octant_verdict::text::{control, normal};
+use octant_verdict::{RequirementsError, RequirementsProblem};
 use std::collections::HashMap;
 
 /// Reads an `.sdoc`.
@@ -157,7 +158,8 @@ impl<'a> Parser<'a> {
                     }
                     _ => {
                         let known: Vec<&str> = HEAD.into_iter().chain(OPTIONS).collect();
-                        let like = crate::error::suggestion(key, &known);
+                        let like =
+                            octant_base::names::suggestion(key, known.iter().copied(), "known");
                         return self
                             .wrong(format!("unknown field {key:?} of the document, {like}"));
                     }
@@ -457,5 +459,5 @@ impl Written {
 fn check(fields: &[Written]) -> Result<Option<field::Said>, Wrong> {
     let of =
         |name: &str| fields.iter().find(|f| f.name == name).map(|f| (f.line, f.value.as_str()));
-    crate::fields::verification(&of)
+    octant_verdict::fields::verification(&of)
 }

@@ -4,8 +4,8 @@ use super::grammar::field_of;
 use super::markup;
 use super::{HEAD, OPTIONS, REQUIREMENT, legal_field, legal_kind, legal_uid};
 use crate::error::ExportError;
-use crate::fields::{ALL, OF_FORMATS, own_fields};
-use crate::requirement::{AttributeKind, Requirement, Requirements};
+use octant_verdict::fields::{ALL, OF_FORMATS, own_fields};
+use octant_verdict::requirement::{AttributeKind, Requirement, Requirements};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 

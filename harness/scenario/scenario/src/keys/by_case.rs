@@ -1,7 +1,7 @@
 //! Values of defaults that depend on other keys. The table of keys shows them, and
 //! [`derive`](crate::derive) sets them.
 
-use super::definition::CaseValue::{self, Number, Told, Value};
+use super::definition::CaseValue::{self, Number, Value, Words};
 use octant_calibration::drift::{LIMIT_MOVING_SIGMAS, LIMIT_SIGMAS};
 
 /// `endpoint.fmu.time_limit` and `source.fmu.time_limit` in a process of its own.
@@ -27,12 +27,12 @@ pub(crate) type Cases = &'static [(&'static str, CaseValue)];
 
 pub(super) const TIME_LIMITS: Cases = &[
     ("in a process of its own", Value(TIME_LIMIT)),
-    ("in the shared one", Told("none, nothing can end a call")),
+    ("in the shared one", Words("none, nothing can end a call")),
 ];
 pub(super) const GUARDS: Cases =
     &[("where the system has guards", Value(GUARD[0])), ("elsewhere", Value(GUARD[1]))];
 pub(super) const G_DEPENDENTS: Cases = &[
-    ("where imu.g_dependent is drawn", Told("its standard deviation")),
+    ("where imu.g_dependent is drawn", Words("its standard deviation")),
     ("elsewhere", Value(G_DEPENDENT)),
 ];
 pub(super) const PRIOR_POSITIONS: Cases =

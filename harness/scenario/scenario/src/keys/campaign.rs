@@ -5,9 +5,18 @@ use super::table::{
     At, Of, Raw, boolean, choice, form_tables, forms, integer, keys, number, numbers, si, table,
     tables, text,
 };
-use crate::campaign::Design;
-use crate::document::DocumentNode;
 use crate::quantity::UnitDimension;
+use octant_toml_tree::Node;
+
+/// Design of the draws over the replicates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Design {
+    /// Independent draws.
+    MonteCarlo,
+    /// One draw in each of as many strips as there are replicates (McKay, Beckman and Conover,
+    /// 1979).
+    LatinHypercube,
+}
 
 keys! {
     /// A campaign.
@@ -84,7 +93,7 @@ keys! {
     pub(crate) struct GridKeys {
         name: At<String> = text(), required, NAME;
         key: Option<String> = text(), derived("the name"), SET;
-        values: At<Vec<DocumentNode>> = Of::<Vec<DocumentNode>>::kind(Kind::Values), required,
+        values: At<Vec<Node>> = Of::<Vec<Node>>::kind(Kind::Values), required,
             "Values: every one is run, as a grid.";
     }
 }
@@ -94,7 +103,7 @@ keys! {
     pub(crate) struct ChooseKeys {
         name: At<String> = text(), required, NAME;
         key: Option<String> = text(), derived("the name"), SET;
-        choose: At<Vec<DocumentNode>> = Of::<Vec<DocumentNode>>::kind(Kind::Values), required,
+        choose: At<Vec<Node>> = Of::<Vec<Node>>::kind(Kind::Values), required,
             "Values: one is drawn for each replicate.";
     }
 }

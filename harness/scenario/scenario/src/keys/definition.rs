@@ -1,10 +1,10 @@
 //! Definition of keys: their kinds, defaults and bounds.
 
 use crate::channel::Channel;
-use crate::document::{DocumentTable, DocumentValue, join};
 use crate::error::{Place, Problem};
 use crate::quantity::UnitDimension;
 use octant_base::names::{nearest, suggestion};
+use octant_toml_tree::{Table, Value, join};
 
 /// Version of the format that this program reads.
 pub const SCHEMA: i64 = 1;
@@ -47,7 +47,7 @@ pub(crate) enum CaseValue {
     /// A plain number.
     Number(f64),
     /// Where the value is from, in words.
-    Told(&'static str),
+    Words(&'static str),
 }
 
 /// Cases of a default in words: `CASE: VALUE; CASE: VALUE`.
@@ -55,7 +55,7 @@ pub(crate) fn cases_in_words(cases: &[(&str, CaseValue)]) -> String {
     let words = cases.iter().map(|(case, value)| match value {
         CaseValue::Value(value) => format!("{case}: \"{value}\""),
         CaseValue::Number(value) => format!("{case}: {value}"),
-        CaseValue::Told(words) => format!("{case}: {words}"),
+        CaseValue::Words(words) => format!("{case}: {words}"),
     });
     words.collect::<Vec<_>>().join("; ")
 }
@@ -187,6 +187,14 @@ impl Section {
         self.keys.iter().find(|key| key.name == name)
     }
 
+    /// Key at a dotted path, through tables that have one set of keys.
+    pub(crate) fn at(&self, path: &str) -> Option<&Key> {
+        match path.split_once('.') {
+            None => self.key(path),
+            Some((first, rest)) => self.key(first)?.kind.section()?.at(rest),
+        }
+    }
+
     /// Names of all keys that can be given.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
         let possible = |key: &&Key| !matches!(key.kind, Kind::Refused(_));
@@ -224,10 +232,10 @@ impl Variants {
     }
 
     /// Keys of a table, by its content.
-    pub(crate) fn section(&self, table: &DocumentTable) -> Option<&'static Section> {
+    pub(crate) fn section(&self, table: &Table) -> Option<&'static Section> {
         match self.tag {
             Tag::Value(key) => match &table.get(key)?.value {
-                DocumentValue::Text(name) => self.form(name),
+                Value::Text(name) => self.form(name),
                 _ => None,
             },
             Tag::Key(_) => {
@@ -238,7 +246,7 @@ impl Variants {
     }
 
     /// Problem of a table without a form.
-    pub(crate) fn problem(&self, table: &DocumentTable, path: &str, place: &Place) -> Problem {
+    pub(crate) fn problem(&self, table: &Table, path: &str, place: &Place) -> Problem {
         let problem = |place: &Place, path: String, message: String| Problem {
             place: place.clone(),
             path,
@@ -252,7 +260,7 @@ impl Variants {
                     return problem(place, path, format!("missing, expected one of {names}"));
                 };
                 let found = node.value.describe();
-                let text = if let DocumentValue::Text(text) = &node.value { text } else { "" };
+                let text = if let Value::Text(text) = &node.value { text } else { "" };
                 let known = suggestion(text, self.names(), "possible");
                 problem(&node.place, path, format!("found {found}, {known}"))
             }

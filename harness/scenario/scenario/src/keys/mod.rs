@@ -9,13 +9,13 @@ pub(crate) mod by_case;
 mod calibration;
 mod campaign;
 mod columns;
-mod connection;
 mod definition;
 mod drive;
 mod faults;
 mod fmu;
 mod further;
 mod instrument;
+pub(crate) mod key_path;
 mod link;
 mod power;
 mod run;
@@ -31,10 +31,10 @@ pub(crate) use calibration::{
     Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation,
     SigmaLimitKeys, StopKeys,
 };
+pub use campaign::Design;
 pub(crate) use campaign::{
     CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, LimitsKeys, MemberKeys,
 };
-pub(crate) use connection::{ConnectionFaultKeys, ConnectionsKeys, connection_section};
 pub use definition::SCHEMA;
 pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, cases_in_words};
 pub(crate) use drive::DriveKeys;
@@ -50,20 +50,20 @@ pub(crate) use further::{
     ScalePerKelvinUse,
 };
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
+pub(crate) use key_path::{key, keys_of};
 pub(crate) use link::LinkKeys;
 pub(crate) use power::PowerKeys;
 pub(crate) use run::{
     DecisionKeys, EndpointKeys, EquipmentKeys, MotionKeys, MotionKind, RealtimeKeys, RecordKeys,
-    RequirementKeys, ScenarioKeys,
+    RequirementKeys, SCENARIO, ScenarioKeys,
 };
 pub(crate) use screening::{GateKeys, ScreeningKeys};
 pub(crate) use source::{
     McapKeys, ReferenceKind, SignalKeys, SourceKeys, SourceLiveKeys, SourceReferenceKeys, TextKeys,
 };
 pub(crate) use suite::{CaseKeys, SuiteKeys};
-pub(crate) use system::SystemRequirementsKeys;
+pub(crate) use system::{
+    ConnectionFaultKeys, ConnectionsKeys, SystemRequirementsKeys, connection_section,
+};
 pub(crate) use table::{At, FromTable, Keys, Raw};
 pub(crate) use trajectory::{ReferenceTrajectoryKeys, SolutionKeys, TrajectoryForm};
-
-/// Keys of a scenario.
-pub(crate) const SCENARIO: &Section = ScenarioKeys::SECTION;

@@ -1,7 +1,7 @@
 //! Keys of the root, the site, the motion, and the use of the results.
 
 use super::calibration::{BASELINE, ProcedureKeys};
-use super::definition::{Bounds, Kind, SCHEMA};
+use super::definition::{Bounds, Kind, SCHEMA, Section};
 use super::faults::{FAULT, OperatorKeys};
 use super::fmu::EndpointFmuKeys;
 use super::further::DrawnSiteKeys;
@@ -18,8 +18,11 @@ use crate::model::MotionComponent;
 use crate::quantity::UnitDimension;
 use octant_base::display::{AttitudeUnit, PositionUnit, VelocityUnit};
 use octant_earth::units::DEG;
-use octant_requirements::Comparison;
-use octant_requirements::decision::DecisionRule;
+use octant_verdict::Comparison;
+use octant_verdict::decision::DecisionRule;
+
+/// Keys of a scenario.
+pub(crate) const SCENARIO: &Section = ScenarioKeys::SECTION;
 
 keys! {
     /// A scenario.

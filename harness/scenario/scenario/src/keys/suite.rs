@@ -2,7 +2,7 @@
 
 use super::definition::SCHEMA;
 use super::table::{At, choice, integer, keys, tables, text};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 keys! {
     /// A suite.

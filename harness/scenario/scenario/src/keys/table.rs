@@ -5,10 +5,10 @@
 
 use super::definition::{Bounds, Default, Key, Kind, Section, Variants, key};
 use crate::complete::complete;
-use crate::document::{self, DocumentNode, DocumentTable};
 use crate::error::{Place, Problem, ScenarioError};
 use crate::quantity::{Quantity, UnitDimension};
 use crate::read::reader::Reader;
+use octant_toml_tree::{Node, Table};
 use std::ops::Deref;
 
 /// Declares a table of a scenario, its keys in the order of the schema:
@@ -160,11 +160,11 @@ pub(crate) trait Keys: FromTable {
     fn parse<T>(
         text: &str,
         file: &str,
-        prepare: impl FnOnce(&mut DocumentTable, &mut Vec<Problem>),
+        prepare: impl FnOnce(&mut Table, &mut Vec<Problem>),
         make: impl FnOnce(Self) -> Result<T, Problem>,
     ) -> Result<T, ScenarioError> {
         let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
-        let mut document = document::parse(text).map_err(with_file)?;
+        let mut document = octant_toml_tree::parse(text).map_err(with_file)?;
         let mut problems = Vec::new();
         prepare(&mut document, &mut problems);
         let start = Place::File { line: 1, column: 1 };
@@ -192,7 +192,7 @@ pub(crate) trait Value: Sized {
 /// A table that is read as a whole, by what else is known of its keys.
 #[derive(Clone, Debug)]
 pub(crate) struct Raw {
-    pub(crate) table: DocumentTable,
+    pub(crate) table: Table,
     pub(crate) path: String,
     place: Place,
 }
@@ -233,8 +233,8 @@ values! {
     u32: |table, key| table.integer(key).map(Some);
     u64: |table, key| table.integer(key).map(Some);
     usize: |table, key| table.integer(key).map(Some);
-    Vec<Vec<String>>: |table, key| Ok(Some(table.entries(key).iter().map(DocumentNode::texts).collect()));
-    Vec<DocumentNode>: |table, key| Ok(Some(table.entries(key).to_vec()));
+    Vec<Vec<String>>: |table, key| Ok(Some(table.entries(key).iter().map(Node::texts).collect()));
+    Vec<Node>: |table, key| Ok(Some(table.entries(key).to_vec()));
     Quantity: |table, key| Ok(table.optional_quantity(key));
     f64: |table, key| match table.optional_si(key) {
         None => table.number(key).map(Some),
@@ -361,6 +361,15 @@ impl<T> At<T> {
     /// Makes a problem of it.
     pub(crate) fn problem(&self, message: impl Into<String>) -> Problem {
         Problem { place: self.place.clone(), path: self.path.clone(), message: message.into() }
+    }
+}
+
+impl At<String> {
+    /// SI value of a unit, which is a key of its own.
+    pub(crate) fn unit_si(&self) -> Result<f64, Problem> {
+        crate::quantity::parse(&format!("1 {}", self.value))
+            .map(|quantity| quantity.si)
+            .map_err(|_| self.problem(format!("found the unknown unit {:?}", self.value)))
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod drive;
 mod endpoint;
-mod fault;
 mod file_name;
 mod fmu;
 mod instrument;
@@ -14,7 +13,6 @@ mod source;
 
 pub use drive::{Drive, TableDriver};
 pub use endpoint::{EndpointSpec, Live};
-pub use fault::Fault;
 pub use file_name::{FileName, FileNameError};
 pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
 pub use instrument::{
@@ -25,6 +23,6 @@ pub(crate) use motion::{MOTIONS, case_attitude};
 pub use port::{ChannelElement, Code, EntryPlace, Made, Set, Setting};
 pub use procedure::{AlignmentSpec, CalibrationSpec, Method, NumberedStops};
 pub use scenario::{
-    ParameterDistribution, Realtime, RecordSpec, RequirementSpec, Scenario, UnknownFault,
+    Fault, ParameterDistribution, Realtime, RecordSpec, RequirementSpec, Scenario, UnknownFault,
 };
 pub use source::SourceSpec;

@@ -1,12 +1,11 @@
-//! A checked scenario, in SI.
+//! A checked scenario, in SI, with its faults.
 
 use super::drive::Drive;
 use super::endpoint::EndpointSpec;
-use super::fault::Fault;
 use super::motion::MotionSpec;
 use super::procedure::{AlignmentSpec, CalibrationSpec, Method};
 use super::source::SourceSpec;
-use crate::document::{DocumentNode, DocumentTable, DocumentValue};
+use crate::error::Place;
 use crate::reference::ReferenceSpec;
 use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
@@ -19,6 +18,7 @@ use octant_power::PowerPlan;
 #[cfg(doc)]
 use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
+use octant_toml_tree::{Node, Table, Value};
 use std::path::PathBuf;
 
 /// Noise of gyros, rad/√s, and of accelerometers, (m/s²)/√Hz, below which, both together, squares of normalized errors are
@@ -28,6 +28,18 @@ const QUIET_GYRO: f64 = 1e-5 * DEG_PER_SQRT_HOUR;
 const QUIET_ACCELEROMETER: [f64; 2] = [0.5 * MICRO_G, 1.5 * MICRO_G];
 /// Longest sub-step of several samples, ns.
 const SUB_STEP_NS: u64 = 50_000_000;
+
+/// A fault of a scenario.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// Specification for the station.
+    pub spec: FaultSpec,
+    /// Epochs at which it is fired by hand, in order. Empty if its trigger isn't manual, or if nobody
+    /// fires it.
+    pub fires: Vec<u64>,
+    /// Place in the scenario.
+    pub place: Place,
+}
 
 /// A checked scenario, in SI. Random values are still distributions: see [`resolve`](crate::resolve).
 #[derive(Clone, Debug)]
@@ -75,9 +87,9 @@ pub struct Scenario {
     /// Limits that the results have to keep.
     pub requirements: Vec<RequirementSpec>,
     /// Decision rule for values near a limit.
-    pub decision: octant_requirements::decision::Decision,
+    pub decision: octant_verdict::decision::Decision,
     /// Equipment of the bench.
-    pub equipment: Vec<octant_requirements::equipment::Equipment>,
+    pub equipment: Vec<octant_verdict::equipment::Equipment>,
     /// Recording.
     pub record: RecordSpec,
     /// Source of the samples.
@@ -97,7 +109,7 @@ pub struct Scenario {
     /// Folder of the scenario, from which relative file names start.
     pub folder: PathBuf,
     /// Document with all defaults.
-    pub(crate) document: DocumentTable,
+    pub(crate) document: Table,
 }
 
 /// Distribution of the true values of a parameter group, SI.
@@ -115,7 +127,7 @@ pub enum ParameterDistribution {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementSpec {
     /// Check of the limit.
-    pub check: octant_requirements::verdict::LimitCheck,
+    pub check: octant_verdict::verdict::LimitCheck,
     /// Statement of the requirement, a sentence.
     pub text: String,
     /// Limit as written.
@@ -206,7 +218,7 @@ impl Scenario {
         some.faults.retain(|_| numbers.next().is_some_and(&keep));
         if some.faults.is_empty() {
             some.document.remove("faults");
-        } else if let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) =
+        } else if let Some(Node { value: Value::Array(entries), .. }) =
             some.document.get_mut("faults")
         {
             let mut numbers = 0..;

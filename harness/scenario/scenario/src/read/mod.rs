@@ -18,11 +18,9 @@ mod sequence;
 mod source;
 pub mod system;
 mod trajectory;
-mod unit_of;
 
 pub(crate) use reader::Reader;
 
-use super::document::DocumentTable;
 use super::error::Problem;
 use super::keys::{FromTable, RealtimeKeys, RecordKeys, ScenarioKeys};
 use super::model::{MotionSpec, Realtime, RecordSpec, Scenario, SourceSpec};
@@ -30,10 +28,11 @@ use octant_base::display::DisplayUnits;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::ARCMIN;
 use octant_plant::config as plant;
+use octant_toml_tree::Table;
 use std::path::Path;
 
 /// Reads a completed document.
-pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Problem> {
+pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
     let keys = ScenarioKeys::of(&Reader::root(&document))?;
     let sample_period_ns = instrument::sample_period_ns(&keys.imu.rate)?;
     let source = source::read(&keys.source, sample_period_ns)?;
@@ -95,7 +94,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         motion,
         file: String::new(),
         folder: folder.to_owned(),
-        document: DocumentTable::default(),
+        document: Table::default(),
     };
     let reference = reference::read(&keys, &scenario)?;
     let power = power::read(&keys, &scenario)?;

@@ -3,12 +3,11 @@
 use super::further::further;
 use super::reader::Reader;
 use super::sequence::{self, from_degrees, stops};
-use crate::document::{DocumentNode, DocumentTable, DocumentValue};
 use crate::error::Problem;
 use crate::keys::{
     AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, FromTable,
     GateKeys, InitialKeys, Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw,
-    Reference, Rotation, ScreeningKeys, SigmaLimitKeys,
+    Reference, Rotation, ScreeningKeys, SigmaLimitKeys, key,
 };
 use crate::model::{AlignmentSpec, CalibrationSpec, MotionSpec, case_attitude};
 use crate::quantity::{self, UnitDimension};
@@ -20,6 +19,7 @@ use octant_calibration::table::CalibrationTable;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
+use octant_toml_tree::{Node, Table, Value};
 use std::path::Path;
 
 /// Properties of the run that the procedure must fit.
@@ -149,13 +149,12 @@ fn initial_parameters(keys: &InitialKeys, folder: &Path) -> Result<Parameters, P
 /// Reads the second method: the keys of the first one, replaced by those of `[baseline]`.
 pub(super) fn baseline(
     baseline: &At<Option<Raw>>,
-    document: &DocumentTable,
+    document: &Table,
     first: &At<Option<CalibrationKeys>>,
     setting: &Setting<'_>,
 ) -> Result<Option<CalibrationSpec>, Problem> {
     let Some(Raw { table: overrides, .. }) = &**baseline else { return Ok(None) };
-    let Some(DocumentNode { value: DocumentValue::Table(primary), .. }) =
-        document.at("procedure.calibration")
+    let Some(Node { value: Value::Table(primary), .. }) = document.at(key!(procedure.calibration))
     else {
         let message = "found without procedure.calibration, which it is compared with";
         return Err(baseline.problem(message));
@@ -163,7 +162,7 @@ pub(super) fn baseline(
     if overrides.get("positions").is_some() && overrides.get("stops").is_some() {
         return Err(baseline.problem("found positions and stops, expected one of them"));
     }
-    let mut merged: DocumentTable = primary.clone();
+    let mut merged: Table = primary.clone();
     // A name belongs to its stops: another sequence doesn't inherit it.
     for (given, replaced) in [("positions", ["stops", "name"]), ("stops", ["positions", "name"])] {
         if overrides.get(given).is_some() {

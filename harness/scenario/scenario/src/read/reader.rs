@@ -1,40 +1,40 @@
 //! Reader of a completed document: a table with its path and place.
 
-use crate::document::{DocumentNode, DocumentTable, DocumentValue, join, number};
 use crate::error::{Place, Problem};
 use crate::quantity::{self, Quantity};
+use octant_toml_tree::{Node, Table, Value, join, number};
 
 /// A table of the completed document with its path and place. The check guarantees the kinds of its
 /// values; an accessor that meets anything else still reports a problem.
 #[derive(Clone)]
 pub(crate) struct Reader<'a> {
-    pub(crate) table: &'a DocumentTable,
+    pub(crate) table: &'a Table,
     pub(crate) path: String,
     pub(crate) place: Place,
 }
 
 impl<'a> Reader<'a> {
     /// Makes a reader for the table of a whole file.
-    pub(crate) fn root(table: &'a DocumentTable) -> Self {
+    pub(crate) fn root(table: &'a Table) -> Self {
         Self { table, path: String::new(), place: Place::File { line: 1, column: 1 } }
     }
 
     /// Makes a reader for a table with its dotted path and place.
-    pub(crate) fn new(table: &'a DocumentTable, path: &str, place: &Place) -> Self {
+    pub(crate) fn new(table: &'a Table, path: &str, place: &Place) -> Self {
         Self { table, path: path.to_owned(), place: place.clone() }
     }
 
     /// Makes a problem of a key, or of the table if the key is omitted.
     pub(crate) fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
         let place = match self.table.get(key) {
-            Some(DocumentNode { place: Place::Default, .. }) | None => &self.place,
+            Some(Node { place: Place::Default, .. }) | None => &self.place,
             Some(node) => &node.place,
         };
         Problem { place: place.clone(), path: join(&self.path, key), message: message.into() }
     }
 
     /// Value of a key.
-    pub(crate) fn node(&self, key: &str) -> Option<&'a DocumentNode> {
+    pub(crate) fn node(&self, key: &str) -> Option<&'a Node> {
         self.table.get(key)
     }
 
@@ -50,7 +50,7 @@ impl<'a> Reader<'a> {
 
     /// Key that was written first.
     pub(crate) fn first_key(&self) -> &'a str {
-        let given = |entry: &&crate::document::KeyEntry| entry.node.place != Place::Default;
+        let given = |entry: &&octant_toml_tree::Entry| entry.node.place != Place::Default;
         self.table.entries.iter().find(given).map_or("", |entry| &entry.key)
     }
 
@@ -68,8 +68,7 @@ impl<'a> Reader<'a> {
 
     /// Table under a key, if it is given.
     pub(crate) fn optional_table(&self, key: &str) -> Option<Reader<'a>> {
-        let Some(DocumentNode { value: DocumentValue::Table(table), place }) = self.node(key)
-        else {
+        let Some(Node { value: Value::Table(table), place }) = self.node(key) else {
             return None;
         };
         let place = if *place == Place::Default { &self.place } else { place };
@@ -83,7 +82,7 @@ impl<'a> Reader<'a> {
             .iter()
             .enumerate()
             .filter_map(|(index, node)| match &node.value {
-                DocumentValue::Table(table) => {
+                Value::Table(table) => {
                     Some(Reader::new(table, &format!("{path}[{index}]"), &node.place))
                 }
                 _ => None,
@@ -94,7 +93,7 @@ impl<'a> Reader<'a> {
     /// Text under a key, if it is given.
     pub(crate) fn optional_text(&self, key: &str) -> Option<&'a str> {
         match &self.node(key)?.value {
-            DocumentValue::Text(text) => Some(text),
+            Value::Text(text) => Some(text),
             _ => None,
         }
     }
@@ -108,17 +107,17 @@ impl<'a> Reader<'a> {
     }
 
     /// Entries of an array.
-    pub(crate) fn entries(&self, key: &str) -> &'a [DocumentNode] {
+    pub(crate) fn entries(&self, key: &str) -> &'a [Node] {
         match self.node(key) {
-            Some(DocumentNode { value: DocumentValue::Array(entries), .. }) => entries,
+            Some(Node { value: Value::Array(entries), .. }) => entries,
             _ => &[],
         }
     }
 
     /// Texts of an array.
     pub(crate) fn texts(&self, key: &str) -> Vec<&'a str> {
-        let text = |node: &'a DocumentNode| match &node.value {
-            DocumentValue::Text(text) => Some(text.as_str()),
+        let text = |node: &'a Node| match &node.value {
+            Value::Text(text) => Some(text.as_str()),
             _ => None,
         };
         self.entries(key).iter().filter_map(text).collect()
@@ -130,7 +129,7 @@ impl<'a> Reader<'a> {
     /// If it is missing.
     pub(crate) fn boolean(&self, key: &str) -> Result<bool, Problem> {
         match self.node(key) {
-            Some(DocumentNode { value: DocumentValue::Boolean(value), .. }) => Ok(*value),
+            Some(Node { value: Value::Boolean(value), .. }) => Ok(*value),
             _ => Err(self.missing(key)),
         }
     }
@@ -141,7 +140,7 @@ impl<'a> Reader<'a> {
     /// If it is missing, or too large for its type.
     pub(crate) fn integer<T: TryFrom<i64>>(&self, key: &str) -> Result<T, Problem> {
         match self.node(key) {
-            Some(DocumentNode { value: DocumentValue::Integer(value), .. }) => {
+            Some(Node { value: Value::Integer(value), .. }) => {
                 T::try_from(*value).map_err(|_| self.problem(key, format!("{value} is too large")))
             }
             _ => Err(self.missing(key)),

@@ -1,6 +1,5 @@
 //! Reads the reference of a source that brings none, from `[source.reference]`.
 
-use super::unit_of::unit_si;
 use crate::error::Problem;
 use crate::keys::{
     At, CalibrationKeys, Reference, ReferenceKind, ScenarioKeys, SourceReferenceKeys,
@@ -117,7 +116,7 @@ fn recorded(
             own.kind.text
         )));
     }
-    let si = unit_si(&own.unit)?;
+    let si = own.unit.unit_si()?;
     let (names, chosen, scale) = match kind {
         RecordedReferenceKind::Velocity => {
             let (name, vertical, sign) = match (&*own.down, &*own.up) {

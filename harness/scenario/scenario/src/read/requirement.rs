@@ -5,11 +5,11 @@ use crate::keys::{At, DecisionKeys, EquipmentKeys, RequirementKeys};
 use crate::model::RequirementSpec;
 use crate::quantity::{self, Quantity};
 use octant_base::names::suggestion;
-use octant_requirements::decision::{Decision, Uncertainty};
-use octant_requirements::equipment::{Day, Equipment};
-use octant_requirements::measures::PathError;
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{measures, signed};
+use octant_verdict::decision::{Decision, Uncertainty};
+use octant_verdict::equipment::{Day, Equipment};
+use octant_verdict::measures::PathError;
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{measures, signed};
 
 pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Problem> {
     let mut all: Vec<RequirementSpec> = Vec::new();

@@ -1,7 +1,6 @@
 //! Reads the source of the samples from `[source]`.
 
 use super::instrument_port::{instrument, log};
-use super::unit_of::unit_si;
 use crate::error::Problem;
 use crate::keys::{At, McapKeys, SignalKeys, SourceKeys, TextKeys};
 use crate::model::{FileName, SourceSpec};
@@ -89,7 +88,7 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
         _ => Some(TimeColumn { column: column(&keys.time_column)?, unit: keys.time_unit }),
     };
     let gimbal = keys.gimbal.as_ref().map(|gimbal| {
-        let scale = unit_si(&gimbal.unit)?;
+        let scale = gimbal.unit.unit_si()?;
         let axis = |key| Ok(AxisColumn { column: column(key)?, offset: 0.0, scale });
         Ok(GimbalColumns { azimuth: axis(&gimbal.azimuth)?, roll: axis(&gimbal.roll)? })
     });
@@ -219,7 +218,7 @@ fn signal(keys: SignalKeys<'_>) -> Result<[Mapped; 3], Problem> {
     if keys.scale.contains(&0.0) {
         return Err(keys.scale.problem("found 0, expected other numbers than zero"));
     }
-    let unit = unit_si(keys.unit)?;
+    let unit = keys.unit.unit_si()?;
     Ok(axes(keys.axes)?.map(|(index, sign)| Mapped {
         index,
         offset: keys.offset[index],

@@ -3,7 +3,7 @@
 use super::faults::connection::Given;
 use crate::error::{Place, Problem, ScenarioError};
 use crate::keys::{Keys, RequirementKeys, SystemRequirementsKeys};
-use octant_requirements::Comparison;
+use octant_verdict::Comparison;
 
 /// A requirement on a signal of a system, as far as it is known without the system.
 #[derive(Clone, Debug, PartialEq)]

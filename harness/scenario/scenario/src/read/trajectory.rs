@@ -1,6 +1,5 @@
 //! Reads `[source.solution]` and `[source.trajectory]`.
 
-use super::unit_of::unit_si;
 use crate::error::Problem;
 use crate::keys::{
     At, ReferenceTrajectoryKeys, ScenarioKeys, SolutionKeys, SourceKeys, TrajectoryForm,
@@ -117,8 +116,8 @@ macro_rules! columns_of {
                         position: [&self.latitude, &self.longitude, &self.height].map(column),
                         velocity: [&self.north, &self.east].map(column),
                         attitude: [&self.roll, &self.pitch, &self.heading].map(column),
-                        angle_rad: unit_si(&self.angle_unit)?,
-                        velocity_mps: unit_si(&self.velocity_unit)?,
+                        angle_rad: self.angle_unit.unit_si()?,
+                        velocity_mps: self.velocity_unit.unit_si()?,
                     })
                 })
             }

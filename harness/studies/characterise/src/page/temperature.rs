@@ -5,7 +5,7 @@ use crate::temperature::TemperatureDependence;
 use crate::text::{per_k, steadiness, unit, unit_per_k};
 use maud::{Markup, html};
 use octant_base::number::{plain, significant};
-use octant_report::chart::{Chart, ChartLine, ChartRole};
+use octant_report::chart::{Chart, Line, Role};
 use octant_scenario::file_names::FileNames;
 
 /// Renders coefficients and plots, or the reason why there are none.
@@ -65,14 +65,10 @@ fn chart(
         (found.channels.get(index).and_then(|fit| fit.per_k), found.reference_c, found.range_c)
     {
         let points = range.map(|t| [t, per_k * (t - reference) / size]).to_vec();
-        chart.lines.push(ChartLine {
-            label: "coefficient".to_owned(),
-            role: ChartRole::Second,
-            points,
-        });
+        chart.lines.push(Line { label: "coefficient".to_owned(), role: Role::Second, points });
     }
     // A gap after each: dots without a line between them.
     let points = means.into_iter().flat_map(|point| [point, [point[0], f64::NAN]]).collect();
-    chart.lines.push(ChartLine { label: "means".to_owned(), role: ChartRole::Primary, points });
+    chart.lines.push(Line { label: "means".to_owned(), role: Role::Primary, points });
     chart
 }

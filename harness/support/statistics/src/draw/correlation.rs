@@ -1,6 +1,7 @@
 //! Correlations of factors, defined by their normal scores.
 
-use super::{DrawError, Factor};
+use super::distribution::Factor;
+use super::error::DrawError;
 use crate::normal;
 use crate::sample::ranks;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! Distributions of factors, truncated through their inverse.
 
-use super::DrawError;
+use super::error::DrawError;
 use crate::normal;
 use serde::{Deserialize, Serialize};
 

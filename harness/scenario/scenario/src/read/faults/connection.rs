@@ -4,7 +4,6 @@ use super::grid::{Grid, Waiting, check_chains};
 use super::named;
 use super::value::value;
 use crate::arguments::fire;
-use crate::document::{DocumentNode, DocumentTable, DocumentValue as Written, join, number};
 use crate::error::{Place, Problem, ScenarioError};
 use crate::keys::{ConnectionFaultKeys, ConnectionsKeys, FromTable, Keys, Raw, TriggerKeys};
 use crate::read::reader::Reader;
@@ -12,6 +11,7 @@ use octant_faults::Values;
 use octant_faults::catalogue::{FaultParameter, Takes};
 use octant_faults::connection::kinds::{self, ConnectionFaultKind};
 use octant_faults::trigger::{Schedule, Trigger};
+use octant_toml_tree::{Node, Table, Value as Written, join, number};
 use std::path::Path;
 
 /// A fault on a connection, as far as it is known without the system.
@@ -77,7 +77,7 @@ pub fn connection_faults(
     steps: u64,
     fires: &[String],
 ) -> Result<Vec<ConnectionFault>, ScenarioError> {
-    let fire_all = |table: &mut DocumentTable, problems: &mut Vec<Problem>| {
+    let fire_all = |table: &mut Table, problems: &mut Vec<Problem>| {
         problems.extend(fires.iter().filter_map(|argument| fire(table, argument).err()));
     };
     let grid = Grid { period_ns: step_s * 1e9, step: "step" };
@@ -168,8 +168,8 @@ fn fault(table: &Reader<'_>, grid: &Grid) -> Result<ConnectionFault, Problem> {
 
 fn given(table: &Reader<'_>, key: &str) -> Result<Given, Problem> {
     match table.node(key) {
-        Some(DocumentNode { value: Written::Text(text), .. }) => Ok(Given::Text(text.clone())),
-        Some(DocumentNode { value: Written::Boolean(value), .. }) => Ok(Given::Flag(*value)),
+        Some(Node { value: Written::Text(text), .. }) => Ok(Given::Text(text.clone())),
+        Some(Node { value: Written::Boolean(value), .. }) => Ok(Given::Flag(*value)),
         Some(node) => match number(&node.value) {
             Some(value) => Ok(Given::Number(value)),
             None => Err(table.problem(key, format!("found {}", node.value.describe()))),

@@ -3,7 +3,7 @@
 use super::grid::Grid;
 use crate::condition;
 use crate::error::Problem;
-use crate::keys::{At, Counted, TriggerKeys};
+use crate::keys::{At, Counted, TriggerKeys, key};
 use crate::model::{CalibrationSpec, Fault, Method, Scenario};
 use crate::read::reader::Reader;
 use octant_calibration::config::TurntableRates;
@@ -182,9 +182,9 @@ impl<'a> Timing<'a> {
         };
         if !there {
             let (what, section) = match mode {
-                Mode::Aligning => ("its attitude is handed over", "procedure.alignment"),
-                Mode::Calibrating => ("it has no calibration", "procedure.calibration"),
-                _ => ("it has no navigation", "procedure.navigation"),
+                Mode::Aligning => ("its attitude is handed over", key!(procedure.alignment)),
+                Mode::Calibrating => ("it has no calibration", key!(procedure.calibration)),
+                _ => ("it has no navigation", key!(procedure.navigation)),
             };
             let message =
                 format!("it can't fire: the run never is {}, {what} ({section})", mode.name());

@@ -1,11 +1,11 @@
 //! Values of the parameters of faults.
 
-use crate::document::{DocumentNode, DocumentValue as Written};
 use crate::error::Problem;
 use crate::read::reader::Reader;
 use crate::{keys, quantity};
 use octant_faults::catalogue::{FaultParameter, Takes};
 use octant_faults::{Channels, Value};
+use octant_toml_tree::{Node, Value as Written};
 
 /// Value of a parameter, which the check has already accepted.
 pub(super) fn value(
@@ -38,7 +38,7 @@ pub(super) fn value(
         }
         Takes::Channels => {
             let names = match table.node(key) {
-                Some(DocumentNode { value: Written::Array(_), .. }) => table.texts(key),
+                Some(Node { value: Written::Array(_), .. }) => table.texts(key),
                 _ => vec![table.text(key)?],
             };
             let sets: Option<Vec<_>> = names.into_iter().map(Channels::named).collect();

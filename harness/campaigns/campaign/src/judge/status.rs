@@ -1,0 +1,436 @@
+//! Progress of a campaign, and its failures.
+
+use super::case_states::{CaseState, checked, each_state};
+use super::independence::{self, Shown};
+use super::stop::{self, StopDecision};
+use crate::execute::case::ResultError;
+use crate::plan::shard::Shard;
+use crate::plan::{Case, Plan, StopRule};
+use crate::store::CampaignResults;
+use crate::store::stream_key::StreamKey;
+use octant_base::number::plain;
+use octant_base::pool::spawn;
+use octant_score::numerics::differs;
+use octant_statistics::cluster::DrawCounts;
+use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
+use octant_verdict::Verdict;
+use octant_verdict::requirement::EnsembleRequirement;
+use octant_verdict::trace::{VerdictCounts, judge};
+use serde::Serialize;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Maximum number of cases that are named.
+const NAMED: usize = 10;
+
+/// State of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CampaignStatus {
+    /// Name of the campaign.
+    pub title: String,
+    /// Plan.
+    pub plan: String,
+    /// Cases.
+    pub cases: usize,
+    /// Cases without a result.
+    pub open: usize,
+    /// Independent draws among the cases, on which any bound is based.
+    pub draws: usize,
+    /// Cases with the same stream of samples: each group is one run, repeated.
+    pub repeated: Vec<Vec<String>>,
+    /// Factors without effect.
+    pub idle_factors: Vec<String>,
+    /// Cases by verdict.
+    pub verdicts: BTreeMap<&'static str, usize>,
+    /// Worst verdict of the cases except for their requirements: a case that ended as an error, a
+    /// refused calibration, a fault that never fired, a case that checks nothing.
+    pub besides: Verdict,
+    /// Status of each requirement.
+    pub requirements: BTreeMap<String, RequirementStatus>,
+    /// Requirements that no run can verify.
+    pub not_by_test: Vec<String>,
+    /// First cases that failed or ended as errors, with reasons.
+    pub bad: Vec<Bad>,
+    /// Cases with two results.
+    pub differing: Vec<String>,
+    /// Cases by other numerics versions, counted, with the meaning of the difference.
+    pub numerics: Vec<String>,
+    /// Reason why no more cases are run; null if all are.
+    pub stopped: Option<String>,
+}
+
+/// Status of a requirement over the cases.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementStatus {
+    /// Overall verdict.
+    pub verdict: Verdict,
+    /// Reason, in plain words.
+    pub reason: String,
+    /// Checks.
+    pub counts: VerdictCounts,
+    /// Independent draws.
+    pub draws: DrawCounts,
+    /// Requirement on all cases together; null if every case must pass.
+    pub ensemble: Option<EnsembleRequirement>,
+    /// Further draws that suffice if all of them pass; null if nothing is required of them
+    /// together.
+    pub needed: Option<Needed>,
+}
+
+/// Case that isn't a pass.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Bad {
+    /// The case.
+    pub case: String,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// First reason.
+    pub reason: String,
+}
+
+/// Error of a state that can't be determined, because a result can't be read.
+#[derive(Debug, thiserror::Error)]
+#[error("failed to {0}")]
+pub struct StatusError(#[from] pub ResultError);
+
+/// Determines the state of a part of the campaign in a folder.
+///
+/// # Errors
+/// If an existing result can't be read.
+pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, StatusError> {
+    of_results(plan, &CampaignResults::open(folder)?, shard)
+}
+
+/// Determines the state of the campaign in a folder. Its results are looked for while its plan is read.
+///
+/// # Errors
+/// If the plan can't be read; the inner error: if an existing result can't be read.
+pub fn of_folder<E>(
+    folder: &Path,
+    read_plan: impl FnOnce() -> Result<Plan, E>,
+) -> Result<Result<CampaignStatus, StatusError>, E> {
+    let (plan, results) = std::thread::scope(|scope| {
+        let results = spawn(scope, || CampaignResults::open(folder));
+        (read_plan(), results.join())
+    });
+    let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let plan = plan?;
+    Ok(results.map_err(StatusError).and_then(|found| of_results(&plan, &found, Shard::WHOLE)))
+}
+
+/// Determines the state of a part of a campaign from results.
+///
+/// # Errors
+/// If an existing result can't be read.
+pub fn of_results(
+    plan: &Plan,
+    results: &CampaignResults,
+    shard: Shard,
+) -> Result<CampaignStatus, StatusError> {
+    let mut status = CampaignStatus {
+        title: plan.title.clone(),
+        plan: plan.id.clone(),
+        cases: 0,
+        open: 0,
+        draws: 0,
+        repeated: Vec::new(),
+        idle_factors: Vec::new(),
+        verdicts: BTreeMap::new(),
+        besides: Verdict::Pass,
+        requirements: BTreeMap::new(),
+        not_by_test: plan.not_by_test.clone(),
+        bad: Vec::new(),
+        differing: Vec::new(),
+        numerics: Vec::new(),
+        stopped: None,
+    };
+    let end = match &plan.stop {
+        None => plan.cases.len(),
+        Some(rule) => {
+            let decision = decide_by(plan, results, rule)?;
+            status.stopped = in_words(rule, decision);
+            decision.end(plan.cases.len())
+        }
+    };
+    let mut tally = StatusTally::of(plan);
+    each_state(
+        plan,
+        results,
+        end,
+        |index| shard.has(index),
+        |case, state| tally.add(case, state, &mut status),
+    )?;
+    let others = std::mem::take(&mut tally.numerics).into_iter().filter_map(|(version, cases)| {
+        Some(format!("{cases} of {} cases: {}", status.cases, differs(version)?))
+    });
+    status.numerics = others.collect();
+    let mine = || plan.cases.iter().take(end).enumerate().filter(|(index, _)| shard.has(*index));
+    let looked = || mine().map(|(_, case)| case).zip(tally.streams.iter().map(Option::as_ref));
+    let draws = independence::draws(looked());
+    status.draws = draws.iter().max().map_or(0, |last| *last as usize + 1);
+    let idle = independence::idle(plan, looked());
+    (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
+    status.requirements = tally.requirements(&draws);
+    Ok(status)
+}
+
+/// Counts over the cases of a plan.
+struct StatusTally<'p> {
+    plan: &'p Plan,
+    requirements: BTreeMap<&'p str, RequirementTally>,
+    streams: Vec<Option<StreamKey>>,
+    numerics: BTreeMap<Option<u32>, usize>,
+}
+
+/// Checks of a requirement so far.
+#[derive(Debug, Default)]
+struct RequirementTally {
+    counts: VerdictCounts,
+    /// Whether each of the cases that count shows it, as one of [`SHOWN`]; those after the last one that checks it are
+    /// missing.
+    shown: Vec<u8>,
+}
+
+/// Results of a case for a requirement, by their place: it isn't checked, has not run, didn't pass, passed.
+const SHOWN: [Option<Option<bool>>; 4] = [None, Some(None), Some(Some(false)), Some(Some(true))];
+
+impl RequirementTally {
+    /// Adds a case by its place among those that count; `None`: it has not run.
+    fn show(&mut self, case: usize, passed: Option<bool>) {
+        self.shown.resize(case, 0);
+        let place = SHOWN.iter().position(|shown| *shown == Some(passed));
+        self.shown.push(place.and_then(|place| u8::try_from(place).ok()).unwrap_or(0));
+    }
+
+    /// Returns the draw of each case that checks it, and whether it passed.
+    fn rows(&self, draws: &[u32]) -> impl Iterator<Item = (usize, Option<bool>)> {
+        let shown = self.shown.iter().map(|place| SHOWN[usize::from(*place)]);
+        draws.iter().zip(shown).filter_map(|(draw, shown)| Some((*draw as usize, shown?)))
+    }
+}
+
+impl<'p> StatusTally<'p> {
+    /// Begins with all requirements, also those that no case checks.
+    fn of(plan: &'p Plan) -> Self {
+        let of_file = plan.requirements.iter().map(|planned| &planned.check.id);
+        let of_scenarios = plan.scenarios.iter().flat_map(|scenario| &scenario.requirements);
+        let requirements = of_file
+            .chain(of_scenarios)
+            .map(|id| (id.as_str(), RequirementTally::default()))
+            .collect();
+        Self { plan, requirements, streams: Vec::new(), numerics: BTreeMap::new() }
+    }
+
+    fn add(&mut self, case: &Case, state: Option<CaseState>, status: &mut CampaignStatus) {
+        let number = status.cases;
+        status.cases += 1;
+        let plan = self.plan;
+        let checked = checked(plan, case);
+        let Some(state) = state else {
+            status.open += 1;
+            for id in checked {
+                let tally = self.requirements.entry(id).or_default();
+                tally.counts.missing += 1;
+                tally.show(number, None);
+            }
+            self.streams.push(None);
+            return;
+        };
+        *status.verdicts.entry(state.verdict.name()).or_default() += 1;
+        let counted = |id: &String| plan.ensemble(id).is_some();
+        let is_counted = !checked.is_empty() && checked.iter().all(counted);
+        if !(is_counted && state.refused_alone) {
+            status.besides = status.besides.worst(state.besides);
+        }
+        for (id, (verdict, passes)) in checked.iter().zip(&state.checks) {
+            let tally = self.requirements.entry(id).or_default();
+            tally.show(number, Some(*passes));
+            let counts = &mut tally.counts;
+            *match verdict {
+                Verdict::Pass => &mut counts.pass,
+                Verdict::None | Verdict::Inconclusive => &mut counts.inconclusive,
+                Verdict::Fail => &mut counts.fail,
+                Verdict::Error => &mut counts.error,
+            } += 1;
+        }
+        self.streams.push(state.stream);
+        if let Some(version) = state.numerics {
+            *self.numerics.entry(version).or_default() += 1;
+        }
+        if state.differs {
+            status.differing.push(case.id.to_string());
+        }
+        if state.verdict > Verdict::Inconclusive && status.bad.len() < NAMED {
+            let reason = state.why.unwrap_or_default();
+            status.bad.push(Bad { case: case.id.to_string(), verdict: state.verdict, reason });
+        }
+    }
+
+    /// Judges each requirement by the draws of the cases.
+    fn requirements(self, draws: &[u32]) -> BTreeMap<String, RequirementStatus> {
+        let of = |(id, tally): (&str, RequirementTally)| {
+            let (ensemble, counts) = (self.plan.ensemble(id), tally.counts);
+            let draws = DrawCounts::of(tally.rows(draws));
+            let (verdict, reason) = judge(ensemble, counts, draws);
+            let needed = ensemble.map(|EnsembleRequirement { pass, confidence }| {
+                further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
+            });
+            (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
+        };
+        self.requirements.into_iter().map(of).collect()
+    }
+}
+
+/// Evaluates the stopping rule on the results in a folder.
+///
+/// # Errors
+/// If an existing result can't be read, or contradicts itself.
+pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Result<StopDecision, StatusError> {
+    decide_by(plan, &CampaignResults::open(folder)?, rule)
+}
+
+/// Evaluates the stopping rule on results.
+///
+/// # Errors
+/// If an existing result can't be read, or contradicts itself.
+pub fn decide_by(
+    plan: &Plan,
+    results: &CampaignResults,
+    rule: &StopRule,
+) -> Result<StopDecision, StatusError> {
+    let wrong = RefCell::new(None);
+    let decision = stop::decide(plan, rule, |case| {
+        let read = results.facts(plan, case).unwrap_or_else(|error| {
+            wrong.borrow_mut().get_or_insert(error);
+            None
+        });
+        Some(Shown::of(&read?, &rule.requirement))
+    });
+    wrong.into_inner().map_or(Ok(decision), |error| Err(error.into()))
+}
+
+fn in_words(rule: &StopRule, decision: StopDecision) -> Option<String> {
+    let StopRule { requirement, demand, .. } = rule;
+    let asked = format!(
+        "{} % at a confidence of {} %",
+        plain(100.0 * demand.pass, 6),
+        plain(100.0 * demand.confidence, 6)
+    );
+    match decision {
+        StopDecision::Shown { end } => Some(format!(
+            "{requirement} is shown to be kept with {asked} after {end} cases: no more are needed"
+        )),
+        StopDecision::Refuted { end } => Some(format!(
+            "{requirement} is shown not to be kept with {asked} after {end} cases: no more are needed"
+        )),
+        StopDecision::Open { .. } => None,
+    }
+}
+
+impl CampaignStatus {
+    /// Returns the verdict: the worst of the requirements and the other findings, an error if a
+    /// case has two results, and no pass before all cases have run, or without any case.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        if !self.differing.is_empty() {
+            return Verdict::Error;
+        }
+        let unfinished = self.open > 0 || self.cases == 0 || self.requirements.is_empty();
+        let least = if unfinished { Verdict::Inconclusive } else { Verdict::Pass };
+        let requirements = self.requirements.values().map(|requirement| requirement.verdict);
+        requirements.fold(self.besides.worst(least), Verdict::worst)
+    }
+
+    /// Describes the parts of the design without effect.
+    #[must_use]
+    pub fn idle_in_words(&self) -> Vec<String> {
+        let idle = self.idle_factors.iter().map(|factor| {
+            format!(
+                "factor {factor} changes nothing: cases that differ in it have the same streams"
+            )
+        });
+        let cases: usize = self.repeated.iter().map(Vec::len).sum();
+        let repeated = (cases > 0).then(|| {
+            let streams = self.repeated.len();
+            format!(
+                "{cases} cases came to {streams} stream{}: cases of the same stream are one run and count \
+                 once, the first are {}",
+                if streams == 1 { "" } else { "s" },
+                self.repeated.iter().flatten().take(3).cloned().collect::<Vec<_>>().join(", ")
+            )
+        });
+        idle.chain(repeated).collect()
+    }
+
+    /// Renders the state as text.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let counts = |counts: &BTreeMap<&'static str, usize>| {
+            let one = |verdict: &Verdict| {
+                let count = counts.get(verdict.name())?;
+                Some(format!("{count} {}", verdict.name()))
+            };
+            Verdict::ALL.iter().filter_map(one).collect::<Vec<_>>().join(", ")
+        };
+        let mut text = format!(
+            "{}: {}\n  {} of {} cases have run: {}\n",
+            self.title,
+            self.verdict().name(),
+            self.cases - self.open,
+            self.cases,
+            counts(&self.verdicts)
+        );
+        let many = |count: usize| if count == 1 { "" } else { "s" };
+        _ = writeln!(text, "  {} independent draw{}", self.draws, many(self.draws));
+        for found in self.idle_in_words() {
+            _ = writeln!(text, "  {found}");
+        }
+        for (id, requirement) in &self.requirements {
+            _ = writeln!(text, "  {id}: {}: {}", requirement.verdict.name(), requirement.reason);
+            match requirement.needed {
+                None | Some(Needed::Runs(0)) => {}
+                Some(Needed::Runs(runs)) => {
+                    _ = writeln!(
+                        text,
+                        "    {runs} more independent draws would show it, if all of them pass"
+                    );
+                }
+                Some(Needed::CannotBeMet) => {
+                    text += "    no number of further draws can show it\n";
+                }
+            }
+        }
+        if !self.not_by_test.is_empty() {
+            let ids = self.not_by_test.join(", ");
+            _ = writeln!(text, "  not verified by runs: {ids}");
+        }
+        if self.requirements.is_empty() {
+            text += "  no requirement checked\n";
+        }
+        for told in &self.numerics {
+            _ = writeln!(text, "  {told}");
+        }
+        if let Some(stopped) = &self.stopped {
+            _ = writeln!(text, "  {stopped}");
+        }
+        for Bad { case, verdict, reason } in &self.bad {
+            _ = writeln!(text, "  case {case}: {}: {reason}", verdict.name());
+        }
+        let bad: usize = [Verdict::Fail, Verdict::Error]
+            .iter()
+            .filter_map(|verdict| self.verdicts.get(verdict.name()))
+            .sum();
+        if bad > self.bad.len() {
+            _ = writeln!(text, "  and {} more", bad - self.bad.len());
+        }
+        for case in &self.differing {
+            _ = writeln!(
+                text,
+                "  case {case} came to two results: this is no deterministic program"
+            );
+        }
+        text
+    }
+}

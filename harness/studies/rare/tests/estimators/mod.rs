@@ -1,0 +1,4 @@
+//! The estimators against closed forms.
+
+mod coverage;
+mod honest;

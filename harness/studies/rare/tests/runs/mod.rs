@@ -1,0 +1,4 @@
+//! Real runs.
+
+mod known;
+mod resumed;
