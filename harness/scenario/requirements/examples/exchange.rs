@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn read(path: &str) -> Result<Imported, Box<dyn Error>> {
-    let imported = exchange::read(Path::new(path), None, &Anything)?;
+    let imported = exchange::read(Path::new(path), None, &exchange::Anything)?;
     for note in &imported.notes {
         println!("{path}: {note}");
     }
