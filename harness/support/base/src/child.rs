@@ -164,7 +164,7 @@ mod tests {
                 let path = entry.unwrap().path();
                 if path.is_dir() {
                     // Tests and benches have a starter of their own.
-                    if !["tests", "benches", "target", "testing"]
+                    if !["tests", "benches", "target", "testing", "test_processes"]
                         .iter()
                         .any(|name| path.ends_with(name))
                     {
