@@ -1,10 +1,10 @@
 //! The HTML page: one file without network access.
 
-use super::analysis::ChannelAnalysis;
+use super::analysis::{ChannelAnalysis, SpectrumBand};
 use super::fit::variance_of;
 use super::kernel::{DifferenceOrder, RandomTerm};
 use super::result::Characterisation;
-use super::text::{estimate, title, unit};
+use super::text::{estimate, rate_unit, title, unit};
 use maud::{Markup, html};
 use octant_base::number::{plain, significant};
 use octant_report::chart::{Band, Chart, Line, Role};
@@ -124,7 +124,7 @@ fn terms(result: &Characterisation) -> Markup {
 fn small(title: &str, x_label: &str, y_label: &str) -> Chart {
     let mut chart = Chart::new(title, x_label, y_label);
     (chart.width, chart.height) = (360.0, 230.0);
-    (chart.hours, chart.decades, chart.logarithmic, chart.legend) = (false, true, true, false);
+    (chart.hours, chart.decades, chart.logarithmic) = (false, true, true);
     chart
 }
 
@@ -134,11 +134,10 @@ fn line(label: &str, role: Role, points: Vec<[f64; 2]>) -> Line {
 
 fn deviations(result: &Characterisation) -> Markup {
     html! {
-        p.hint { "Overlapping Allan deviation with its interval of 95 %. Dotted: sum of the fitted terms. Grey: the simulated twin. \
-            Modified Allan and Hadamard deviations are in the JSON." }
+        p.hint { "Overlapping Allan deviation with its interval of 95 %. Modified Allan and Hadamard deviations are in the JSON." }
         @for (triad, channels) in triads(result) {
             div.multiples { @for channel in channels {
-                @let title = format!("{triad} {}, {}", axis(result, channel), channel.unit);
+                @let title = format!("{triad} {}, {}", axis(result, channel), rate_unit(channel).0);
                 (deviation_chart(&title, channel, result).render())
             } }
         }
@@ -154,6 +153,7 @@ fn axis(result: &Characterisation, channel: &ChannelAnalysis) -> String {
 
 fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisation) -> Chart {
     let mut chart = small(title, "averaging time, s", title);
+    let (_, size) = rate_unit(channel);
     chart.dots = true;
     let rows = || {
         channel
@@ -165,7 +165,10 @@ fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisa
         label: "interval of 95 %".to_owned(),
         role: Role::Primary,
         points: rows()
-            .map(|row| [libm::log10(row.tau_s), row.allan.interval[0], row.allan.interval[1]])
+            .map(|row| {
+                let [low, high] = row.allan.interval.map(|deviation| deviation / size);
+                [libm::log10(row.tau_s), low, high]
+            })
             .collect(),
     });
     let of_twin = result
@@ -177,7 +180,7 @@ fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisa
         let points = twin
             .deviations
             .iter()
-            .map(|row| [libm::log10(row.tau_s), row.allan.deviation])
+            .map(|row| [libm::log10(row.tau_s), row.allan.deviation / size])
             .collect();
         chart.lines.push(line("simulated twin", Role::Reference, points));
     }
@@ -185,10 +188,10 @@ fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisa
         let (kernel, squares) = (noise.kernel(1.0 / result.rate_hz), noise.squares());
         let fitted =
             |tau_s: f64| libm::sqrt(variance_of(&kernel, &squares, DifferenceOrder::Second, tau_s));
-        let points = rows().map(|row| [libm::log10(row.tau_s), fitted(row.tau_s)]).collect();
+        let points = rows().map(|row| [libm::log10(row.tau_s), fitted(row.tau_s) / size]).collect();
         chart.lines.push(line("sum of the terms", Role::Second, points));
     }
-    let points = rows().map(|row| [libm::log10(row.tau_s), row.allan.deviation]).collect();
+    let points = rows().map(|row| [libm::log10(row.tau_s), row.allan.deviation / size]).collect();
     chart.lines.push(line("Allan deviation", Role::Primary, points));
     chart
 }
@@ -197,10 +200,10 @@ fn spectra(result: &Characterisation) -> Markup {
     html! {
         @if result.analysis.segments == 0 { p { "Not told: no stretch at rest has a whole segment." } }
         @else { p.hint { "Square root of the one-sided density, means over thirds of an octave, "
-            (result.analysis.segments) " segments of " (plain(1.0 / result.analysis.bin_hz, 4)) " s. Grey: the simulated twin." } }
+            (result.analysis.segments) " segments of " (plain(1.0 / result.analysis.bin_hz, 4)) " s." } }
         @for (triad, channels) in triads(result) {
             div.multiples { @for channel in channels {
-                @let title = format!("{triad} {}, {}/√Hz", axis(result, channel), channel.unit);
+                @let title = format!("{triad} {}, {}/√Hz", axis(result, channel), rate_unit(channel).0);
                 (spectrum_chart(&title, channel, result).render())
             } }
         }
@@ -210,7 +213,9 @@ fn spectra(result: &Characterisation) -> Markup {
 fn spectrum_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisation) -> Chart {
     let mut chart = small(title, "frequency, Hz", title);
     let points = |channel: &ChannelAnalysis| {
-        channel.spectrum.iter().map(|band| [libm::log10(band.frequency_hz), band.density]).collect()
+        let (_, size) = rate_unit(channel);
+        let point = |band: &SpectrumBand| [libm::log10(band.frequency_hz), band.density / size];
+        channel.spectrum.iter().map(point).collect()
     };
     let of_twin = result
         .twin
@@ -234,7 +239,7 @@ fn lines(result: &Characterisation) -> Markup {
     html! {
         @if found.is_empty() && result.analysis.segments > 0 { p { "None, at a probability of a false line of 1 % a channel." } }
         @if !found.is_empty() {
-            p.hint { "White noise alone has a line with a probability of 1 % a channel. Amplitudes are those in the samples. A line above \
+            p.hint { "Noise without lines has one with a probability of 1 % a channel. Amplitudes are those in the samples. A line above \
                 half of the sample rate is seen folded." }
             table {
                 thead { tr { th { "Channel" } th.n { "Frequency, Hz" } th.n { "Resolution, Hz" } th.n { "Amplitude" } th { "Unit" }
@@ -243,8 +248,8 @@ fn lines(result: &Characterisation) -> Markup {
                     td { (result.names_in_file.channel(channel.name)) }
                     td.n { (plain(line.frequency_hz, 6)) }
                     td.n { (significant(line.resolution_hz, 2)) }
-                    td.n { (significant(line.amplitude, 3)) }
-                    td { (channel.unit) }
+                    td.n { (significant(line.amplitude / rate_unit(channel).1, 3)) }
+                    td { (rate_unit(channel).0) }
                     td.n { (significant(line.false_alarm, 2)) }
                     td { (line.mains.as_deref().unwrap_or("–")) }
                 } } }
