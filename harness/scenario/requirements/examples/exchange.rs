@@ -8,7 +8,6 @@
 //! CASES has a line for each case: its id, the verdict of each check as `ID=verdict`.
 #![allow(clippy::print_stdout)]
 
-use octant_requirements::exchange::Anything;
 use octant_requirements::{Imported, exchange, strictdoc};
 use octant_verdict::Verdict;
 use octant_verdict::trace::{CampaignTrace, TracedCase, TracedResult};
