@@ -256,9 +256,12 @@ impl Points for NmeaReader {
 /// Finds the day of the first point.
 fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
     let mut first_ns = None;
-    let mut sentences = 0_u64;
+    let (mut sentences, mut unsummed) = (0_u64, 0_u64);
     while lines.advance()? && (sentences > 0 || lines.line <= LINES_TO_LOOK_AT) {
-        let Some(sentence) = Sentence::of(&lines.text) else { continue };
+        let Some(sentence) = Sentence::of(&lines.text) else {
+            unsummed += u64::from(lacks_checksum(&lines.text));
+            continue;
+        };
         sentences += 1;
         let first_ns = *first_ns.get_or_insert(sentence.of_day_ns.unwrap_or_default());
         if let (Some(day_ns), Some(of_day_ns)) = (sentence.day_ns, sentence.of_day_ns) {
@@ -267,12 +270,27 @@ fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
             return Ok(if evening { day_ns - DAY_NS } else { day_ns });
         }
     }
-    Err(if sentences == 0 {
+    Err(if sentences == 0 && unsummed > 0 {
+        format!(
+            "found {unsummed} sentences without a checksum, expected each to end in * and two hexadecimal digits, the exclusive or of \
+             the characters between $ and *: have the receiver or the logger write them; without, a damaged sentence can't be told"
+        )
+    } else if sentences == 0 {
         "found no sentence of NMEA 0183 with a position, a speed or an attitude, and a right checksum"
             .to_owned()
     } else {
         format!("found {sentences} sentences and no date, expected an RMC or a ZDA")
     })
+}
+
+/// Returns whether a line has a sentence that would count if it had a checksum.
+fn lacks_checksum(line: &str) -> bool {
+    let Some((_, body)) = line.trim_end().rsplit_once('$') else { return false };
+    if body.contains('*') {
+        return false;
+    }
+    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+    Sentence::of(&format!("${body}*{sum:02X}")).is_some()
 }
 
 /// Learns whether the velocities without a time belong to the positions after them: those of the positions before and after

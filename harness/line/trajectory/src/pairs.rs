@@ -224,6 +224,10 @@ impl SolutionPairs {
             let Some(reference) = self.reference.at(point.time_ns + self.offset_ns)? else {
                 continue;
             };
+            // Longitudes may count from 0 to 360° in one file and from -180° in the other.
+            let turns = ((point.longitude_rad - reference.longitude_rad) / TAU).round();
+            let longitude_rad = point.longitude_rad - turns * TAU;
+            let point = TrajectoryPoint { longitude_rad, ..point };
             let first_ns = *self.first_ns.get_or_insert(point.time_ns);
             let since_ns = u64::try_from(point.time_ns - first_ns).unwrap_or(0);
             let time_ns = since_ns.saturating_add(self.period_ns);

@@ -1,6 +1,6 @@
 //! SBET, "smoothed best estimate of trajectory": records of 17 doubles, little endian, without a header.
 //!
-//! Time is in seconds of the GPS week, angles in rad. Velocities are left out: the programs that write such files
+//! Time is in seconds of the GPS week, which may end in the file, angles in rad. Velocities are left out: the programs that write such files
 //! don't agree about their axes. Heading counts from the platform's x axis, which the wander angle turns away from
 //! north; they don't agree about its sign either, so an attitude is taken where it is zero.
 
@@ -12,9 +12,15 @@ use std::io::{BufReader, Read};
 const FIELDS: usize = 17;
 const RECORD: usize = 8 * FIELDS;
 
+/// Seconds of a GPS week.
+const WEEK_S: f64 = 604_800.0;
+
 pub(crate) struct SbetReader {
     file: BufReader<File>,
     records: u64,
+    /// Seconds of the weeks that ended in the file.
+    weeks_s: f64,
+    last_s: f64,
 }
 
 impl SbetReader {
@@ -23,7 +29,8 @@ impl SbetReader {
         if bytes == 0 || !bytes.is_multiple_of(RECORD as u64) {
             return Err(format!("found {bytes} bytes, expected records of {RECORD} bytes"));
         }
-        Ok(Self { file: BufReader::with_capacity(1 << 16, file), records: 0 })
+        let file = BufReader::with_capacity(1 << 16, file);
+        Ok(Self { file, records: 0, weeks_s: 0.0, last_s: 0.0 })
     }
 }
 
@@ -59,8 +66,13 @@ impl Points for SbetReader {
             let place = self.place();
             return Err(format!("{place}: found time {time_s} s, expected seconds of a GPS week"));
         }
+        // Seconds that begin again with the week; some files count on.
+        if time_s + 0.5 * WEEK_S < self.last_s && self.last_s <= WEEK_S {
+            self.weeks_s += WEEK_S;
+        }
+        self.last_s = time_s;
         Ok(Some(TrajectoryPoint {
-            time_ns: (time_s * 1e9).round() as i64,
+            time_ns: ((self.weeks_s + time_s) * 1e9).round() as i64,
             latitude_rad,
             longitude_rad,
             height_m,

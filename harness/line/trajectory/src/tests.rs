@@ -433,3 +433,35 @@ fn midnight_passes_once_with_and_without_a_date() {
         assert_eq!(steps, [SECOND_NS; 3], "{dates}");
     }
 }
+
+#[test]
+fn sentences_without_checksums_are_refused_with_what_to_write() {
+    let folder = tempfile::tempdir().unwrap();
+    let text: String = (0..20).map(|s| Circle::zda(s) + &Circle::gga(s)).collect();
+    let bare: String =
+        text.lines().map(|line| line.split('*').next().unwrap().to_owned() + "\r\n").collect();
+    let found = all(&file(folder.path(), "a.nmea", bare), &TrajectoryFormat::Nmea).unwrap_err();
+    assert!(
+        found.contains("found 40 sentences without a checksum, expected each to end in *"),
+        "{found}"
+    );
+}
+
+#[test]
+fn a_gps_week_ends_in_an_sbet() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = |time_s: f64| {
+        let mut fields = [0.0; 17];
+        (fields[0], fields[1], fields[2]) = (time_s, 0.5, 0.1);
+        fields.iter().flat_map(|field: &f64| field.to_le_bytes()).collect::<Vec<u8>>()
+    };
+    let seconds = |times_s: &[f64]| {
+        let bytes: Vec<u8> = times_s.iter().flat_map(|time_s| record(*time_s)).collect();
+        let points = all(&file(folder.path(), "a.sbet", bytes), &TrajectoryFormat::Sbet)?;
+        Ok::<_, String>(points.iter().map(|point| point.time_ns / SECOND_NS).collect::<Vec<_>>())
+    };
+    assert_eq!(seconds(&[604_799.0, 0.0, 1.0]).unwrap(), [604_799, 604_800, 604_801]);
+    // Files that count on, and time that runs back within a week.
+    assert_eq!(seconds(&[604_799.0, 604_800.0, 604_801.0]).unwrap(), [604_799, 604_800, 604_801]);
+    assert!(seconds(&[1000.0, 999.0]).unwrap_err().contains("1.000000000 s before"));
+}

@@ -28,7 +28,7 @@ pub(super) struct SolutionArguments {
     #[arg(long, value_name = "TIME", requires = "solution")]
     skip: Option<String>,
     /// Time added to the solution's times to get those of the reference.
-    #[arg(long, value_name = "TIME", requires = "solution", allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", requires = "solution", allow_hyphen_values = true)]
     offset: Option<String>,
     /// How far the offset may be wrong (95 %).
     #[arg(long, value_name = "TIME", requires = "solution")]
