@@ -101,6 +101,23 @@ fn a_drift_is_scored_as_it_was_made() {
     }
 }
 
+#[test]
+fn longitudes_a_turn_apart_are_the_same_and_an_offset_may_be_negative() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let turned = |t: f64| {
+        let [latitude, longitude, north, east, heading] = drifting(t);
+        [latitude, longitude - 360.0, north, east, heading]
+    };
+    std::fs::write(here.join("ref.csv"), rows(seconds(0, 3700), circle, 0.0)).unwrap();
+    std::fs::write(here.join("ins.csv"), rows(seconds(60, 3660), turned, 1000.0)).unwrap();
+    std::fs::write(here.join("trial.toml"), REQUIRED).unwrap();
+    let ended = score(here, &["--scenario", "trial.toml", "--offset", "-1000 s"]);
+    assert_eq!(ended.status.code(), Some(0), "{ended:?}");
+    let error = summary(here)["navigation"]["longitude_error_arcmin"]["max"].as_f64().unwrap();
+    assert!(error < 1e-5, "{error}");
+}
+
 /// A line of NovAtel's INSPVAS at a second of the Thursday of GPS week 2345, with the CRC of its manual.
 fn inspvas(second: f64, [latitude, longitude, north, east, heading]: [f64; 5]) -> String {
     let second = 345_600.0 + second;
