@@ -114,7 +114,7 @@ fn channels_have_the_names_of_the_files_columns() {
     }
     let page = std::fs::read_to_string(here.join("page.html")).unwrap();
     for words in
-        [">y (−GyroYCalib)<", "<td>gyro_z (−GyroZCalib)</td>", "Gyro x (GyroXCalib), rad/s"]
+        [">y (−GyroYCalib)<", "<td>gyro_z (−GyroZCalib)</td>", "Gyro x (GyroXCalib), deg/h"]
     {
         assert!(page.contains(words), "{words}");
     }
