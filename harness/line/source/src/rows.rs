@@ -120,12 +120,21 @@ impl Rows {
             }
             RecordedColumn::Number(number) => Ok(number - 1),
             RecordedColumn::Name(name) => {
-                let header = self.header.iter().flatten();
-                header.clone().position(|found| found == name).ok_or_else(|| {
-                    let names: Vec<&str> = header.collect();
-                    let hint = self.other_delimiter(&names).unwrap_or_default();
-                    self.error(format!("no column {name:?}, found {}{hint}", names.join(", ")))
-                })
+                let names: Vec<&str> = self.header.iter().flatten().collect();
+                let mut found = (0..names.len()).filter(|index| names[*index] == name);
+                match (found.next(), found.next()) {
+                    (Some(index), None) => Ok(index),
+                    (Some(one), Some(other)) => Err(self.error(format!(
+                        "found two columns {name:?}, {} and {}, expected one: say which by its number",
+                        one + 1,
+                        other + 1
+                    ))),
+                    (None, _) => {
+                        let hint = self.other_delimiter(&names).unwrap_or_default();
+                        let names = names.join(", ");
+                        Err(self.error(format!("no column {name:?}, found {names}{hint}")))
+                    }
+                }
             }
         }
     }

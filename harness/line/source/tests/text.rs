@@ -207,6 +207,11 @@ fn a_header_with_another_delimiter_is_hinted_at() {
             Delimiter::Character(b','),
             "no column \"t\", found t gx; with delimiter = \"whitespace\" the line has 2 columns",
         ),
+        (
+            "t,gx,t\n",
+            Delimiter::Character(b','),
+            "found two columns \"t\", 1 and 3, expected one: say which by its number",
+        ),
         // A name with a blank in it, and no other delimiter.
         ("time gx\n", Delimiter::Blanks, "no column \"t\", found time, gx"),
     ] {

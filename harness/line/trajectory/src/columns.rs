@@ -62,12 +62,23 @@ impl ColumnsReader {
                 None => NAMES[index],
             };
             let Some(header) = &header else { return Ok(None) };
-            let same = |wanted: &str| header.iter().position(|found| found == wanted);
+            let same = |wanted: &str| -> Result<Option<usize>, String> {
+                let mut places = header.iter().enumerate().filter(|(_, found)| *found == wanted);
+                let first = places.next().map(|(place, _)| place);
+                match (first, places.next()) {
+                    (Some(one), Some((other, _))) => Err(format!(
+                        "found two columns {wanted:?}, {} and {}, expected one: say which by its number",
+                        one + 1,
+                        other + 1
+                    )),
+                    _ => Ok(first),
+                }
+            };
             // Where a table has the truth beside a solution, what it lacks isn't taken from the solution.
-            let truth = same(&format!("true_{name}"));
+            let truth = same(&format!("true_{name}"))?;
             let found = match (has_truth, columns.truth_first && index > 0) {
                 (true, true) => truth,
-                _ => same(name).or(truth),
+                _ => same(name)?.or(truth),
             };
             match (found, chosen[index]) {
                 (None, Some(_)) => {

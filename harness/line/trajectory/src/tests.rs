@@ -465,3 +465,14 @@ fn a_gps_week_ends_in_an_sbet() {
     assert_eq!(seconds(&[604_799.0, 604_800.0, 604_801.0]).unwrap(), [604_799, 604_800, 604_801]);
     assert!(seconds(&[1000.0, 999.0]).unwrap_err().contains("1.000000000 s before"));
 }
+
+#[test]
+fn two_columns_of_one_name_are_refused_with_their_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "time_s,latitude_deg,longitude_deg,latitude_deg\n1,2,3,4\n2,2,3,4\n";
+    let path = file(folder.path(), "two.csv", text);
+    let found = all(&path, &csv()).unwrap_err();
+    let words =
+        "found two columns \"latitude_deg\", 2 and 4, expected one: say which by its number";
+    assert!(found.contains(words), "{found}");
+}

@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_named() {
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../fmu");
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../fmu");
         let unknown = standard_library("z80-unknown-cpm", &source).unwrap_err();
         assert!(unknown.contains("knows no target z80-unknown-cpm"), "{unknown}");
         // A target known to the compiler, for which no standard library is ever shipped.
