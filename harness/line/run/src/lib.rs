@@ -1,4 +1,4 @@
-//! A run: epochs driven from source to endpoint to recorder, observed on the way, then scored.
+//! A run: epochs on their way from source to endpoint to recorder, observed as they go by, then scored.
 //!
 //! | folder | what it has |
 //! |---|---|
@@ -15,7 +15,7 @@ mod results;
 mod ways;
 
 pub use bench::ended::{Ended, RunError};
-pub use bench::error::{MethodError, SetupError, core_problem};
+pub use bench::error::{MethodError, SetupError};
 pub use bench::faulted::Faulted;
 pub use bench::host::RunHost;
 pub use bench::interfere::Interferes;
@@ -26,7 +26,7 @@ pub use bench::{Bench, Records, unit};
 pub use observers::Observers;
 pub use results::assemble::{Run, assemble};
 pub use results::method::{MethodRun, planned_of};
-pub use results::{assemble, difference, findings, raw_counts, refusal, rotation, scores_text};
+pub use results::{assemble, difference, findings, raw_counts, refusal, rotation};
 pub use ways::once::{core_of, run_as_far_as_it_goes, run_method};
 pub use ways::prepared::{Prepared, PreparedError};
 pub use ways::stepped::{Parts, SteppedRun};

@@ -84,7 +84,7 @@ impl RunError {
     /// True if source, endpoint or the disk of the recording went away: results up to then stay
     /// valid.
     #[must_use]
-    pub fn is_gone(&self) -> bool {
+    pub(crate) fn is_gone(&self) -> bool {
         matches!(
             self,
             Self::Source(SourceError::Gone { .. } | SourceError::TableStopped { .. })

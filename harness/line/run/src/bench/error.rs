@@ -81,8 +81,7 @@ impl From<octant_endpoint::EndpointOpenError> for SetupError {
 }
 
 /// Describes why a core can't be set up, in terms of the scenario.
-#[must_use]
-pub fn core_problem(error: &CoreConfigError) -> String {
+fn core_problem(error: &CoreConfigError) -> String {
     use octant_base::number::plain;
     match error {
         CoreConfigError::Alignment { alignment_s, dwell_s } if alignment_s <= dwell_s => {

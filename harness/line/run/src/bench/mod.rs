@@ -2,7 +2,7 @@
 //!
 //! A [`Bench`] is opened from a [`Plan`], which names each policy once. It takes steps; whoever holds it says only
 //! *when*: to the end, until something is reached, one at a time, by the clock. [`Bench::branch`] makes a second run that
-//! goes on from here. [`Bench::close`] ends it. [`steps`] has the loop, [`records`] what is kept.
+//! goes on from here. [`Bench::close`] ends it. [`steps`] has the loop, `records` what is kept.
 
 pub(crate) mod attended;
 pub mod closed;
@@ -93,7 +93,7 @@ impl<S: Source, E: Endpoint, K: Keeps<S, E>> Bench<S, E, K> {
     }
 
     /// Takes steps until this is reached before one of them, or the run is over.
-    pub fn run_until(&mut self, mut is_reached: impl FnMut(&mut Self) -> bool) {
+    pub(crate) fn run_until(&mut self, mut is_reached: impl FnMut(&mut Self) -> bool) {
         while self.ended.is_none() && !is_reached(self) {
             self.step();
         }
@@ -148,7 +148,7 @@ pub(crate) fn noted(
 }
 
 impl<'a, S: Source, E: Endpoint> Bench<S, E, Records<'a>> {
-    /// Creates a run of parts that a test made.
+    /// Creates a run of parts that are there, with its recorder and observers.
     pub fn of_parts(
         source: S,
         endpoint: E,

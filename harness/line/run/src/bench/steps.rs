@@ -1,9 +1,9 @@
 //! The loop: source → faults → endpoint → recorder and observers, one step of the source at a time.
 //!
-//! [`Steps::step`] is the only body of a loop over samples. Its type parameters are the choices, so that each
-//! combination is compiled for itself: [`Source`] and [`Endpoint`]; [`Injects`] for what happens
+//! `Steps::step` is the only body of a loop over samples. Its type parameters are the choices, so that each
+//! combination is compiled for itself: [`Source`] and [`Endpoint`]; `Injects` for what happens
 //! between them (nothing, faults, events of a recording); [`Keeps`] for the results and the pace: in
-//! time ([`Records`](super::Records)), by the clock, compared with a recording, or dropped.
+//! simulated time ([`Records`](super::Records)), by the clock, compared with a recording, or dropped.
 
 use super::ended::{Ended, RunError};
 use super::faulted::{Behind, Faulted};
@@ -18,7 +18,7 @@ use octant_source::{Epoch, Source};
 
 /// State of the loop between two steps.
 #[derive(Clone, Debug)]
-pub struct Steps {
+pub(crate) struct Steps {
     epoch: Epoch,
     output: Output,
     powered: bool,
@@ -29,7 +29,7 @@ pub struct Steps {
 
 impl Steps {
     /// Creates the state before the first step.
-    pub fn new(total: Option<u64>) -> Self {
+    pub(crate) fn new(total: Option<u64>) -> Self {
         Self {
             epoch: Epoch::default(),
             output: Output::default(),
@@ -40,27 +40,27 @@ impl Steps {
     }
 
     /// Sets the number of steps after which the loop ends.
-    pub fn last(&mut self, total: u64) {
+    pub(crate) fn last(&mut self, total: u64) {
         self.total = total;
     }
 
     /// Epoch that the source delivered in the last step.
-    pub fn epoch(&self) -> &Epoch {
+    pub(crate) fn epoch(&self) -> &Epoch {
         &self.epoch
     }
 
     /// Last answer of the endpoint.
-    pub fn output(&self) -> &Output {
+    pub(crate) fn output(&self) -> &Output {
         &self.output
     }
 
     /// Number of steps so far.
-    pub fn number(&self) -> u64 {
+    pub(crate) fn number(&self) -> u64 {
         self.number
     }
 
     /// Takes steps until one of them ends the run.
-    pub fn go_on<S, F, E, K>(
+    pub(crate) fn go_on<S, F, E, K>(
         &mut self,
         source: &mut S,
         faults: &mut F,
@@ -82,7 +82,7 @@ impl Steps {
 
     /// Takes one step of the source; returns the end of the run, where this was the last one.
     #[inline(always)]
-    pub fn step<S, F, E, K>(
+    pub(crate) fn step<S, F, E, K>(
         &mut self,
         source: &mut S,
         faults: &mut F,
@@ -182,7 +182,7 @@ where
 }
 
 /// Acts between source and endpoint. Every method can do nothing.
-pub trait Injects<S: ?Sized, E: ?Sized> {
+pub(crate) trait Injects<S: ?Sized, E: ?Sized> {
     /// Acts before the source makes the epoch of this number: on source, endpoint and command.
     fn before(
         &mut self,
@@ -219,7 +219,7 @@ pub trait Injects<S: ?Sized, E: ?Sized> {
 
 /// Nothing between source and endpoint.
 #[derive(Clone, Copy, Debug)]
-pub struct NoFaults;
+pub(crate) struct NoFaults;
 
 impl<S: ?Sized, E: ?Sized> Injects<S, E> for NoFaults {}
 

@@ -79,7 +79,7 @@ pub fn of(event: &Event) -> Result<Option<UnitEvent>, UnitEventError> {
 ///
 /// # Errors
 /// If the endpoint can't.
-pub fn happen<E: Endpoint + ?Sized>(
+pub(crate) fn happen<E: Endpoint + ?Sized>(
     event: &UnitEvent,
     sample: u64,
     endpoint: &mut E,

@@ -87,7 +87,7 @@ impl Answers {
 
     /// Describes the answers that don't follow the unit's input.
     #[must_use]
-    pub fn do_not_follow(&self) -> Vec<String> {
+    pub(crate) fn do_not_follow(&self) -> Vec<String> {
         self.follow.reasons()
     }
 }

@@ -40,7 +40,7 @@ const TILTS_MPS2: f64 = 0.05 * STANDARD_GRAVITY_MPS2;
 /// Returns the noise of a scenario's simulated instrument; `None` where this program's plant doesn't make
 /// the samples.
 #[must_use]
-pub fn instrument_noise(scenario: &Scenario) -> Option<InstrumentNoise> {
+pub(crate) fn instrument_noise(scenario: &Scenario) -> Option<InstrumentNoise> {
     let (imu, more) = (&scenario.imu, &scenario.imu.extensions);
     // A counter's remainder is spread over its last digit evenly: a standard deviation of q/√12.
     let quantization = |coarser: f64, lsb: f64| coarser.max(lsb) / 12.0f64.sqrt();

@@ -42,7 +42,7 @@ impl PlannedWork {
     /// Angles of azimuth and roll at which the gimbals stand through the whole calibration, rad; `None` where
     /// they move, or aren't commanded.
     #[must_use]
-    pub fn standing_rad(&self) -> Option<[f64; 2]> {
+    pub(crate) fn standing_rad(&self) -> Option<[f64; 2]> {
         let first = self.stops.first()?.target;
         let standing = self.stops.iter().all(|stop| stop.target == first);
         standing.then(|| [first.azimuth_rad(), first.roll_rad()])
@@ -178,7 +178,7 @@ struct Began {
 impl Done {
     /// Creates a counter for a plan.
     #[must_use]
-    pub fn towards(plan: PlannedWork) -> Self {
+    pub(crate) fn towards(plan: PlannedWork) -> Self {
         Self { plan, ..Self::default() }
     }
 
@@ -202,7 +202,7 @@ impl Done {
     /// Returns the duration of the alignment, s: from the first sample to the first answer after it; 0
     /// for a unit that is given its attitude. `None` as long as the unit aligns.
     #[must_use]
-    pub fn alignment_s(&self) -> Option<f64> {
+    pub(crate) fn alignment_s(&self) -> Option<f64> {
         let until = self.began.calibrating.or(self.began.navigating)?;
         Some(until.saturating_sub(self.first_ns?) as f64 * 1e-9)
     }

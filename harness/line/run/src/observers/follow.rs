@@ -15,7 +15,7 @@ const REMEMBERED: usize = 64;
 /// Minimum number of NIS values for the statement that all are equal.
 const NIS_LEAST: u64 = 8;
 
-/// Watches one run, without allocating memory.
+/// Follows one run, without allocating memory.
 #[derive(Clone, Debug)]
 pub struct RunFollower {
     /// Navigation solution at the last answer.
@@ -57,7 +57,7 @@ impl Nis {
 const PARTS: [&str; 3] = ["position", "velocity", "attitude"];
 
 impl RunFollower {
-    /// Creates a watch of a unit that reports these quantities; `None`: its solution isn't checked.
+    /// Creates the checks of a unit that reports these quantities; `None`: its solution isn't checked.
     #[must_use]
     pub fn new(tells: Option<Tells>) -> Self {
         Self {

@@ -272,7 +272,7 @@ impl Observers {
 
     /// Returns the length of the run so far, s of device time.
     #[must_use]
-    pub fn elapsed_s(&self) -> f64 {
+    pub(crate) fn elapsed_s(&self) -> f64 {
         self.now.last_ns as f64 * 1e-9
     }
 }

@@ -226,7 +226,6 @@ pub fn assemble_with(
     Ok(Run { summary, report })
 }
 
-/// Uncertainty of the times of a solution against its reference.
 /// Adds to each refused calibration what its reader needs.
 fn explain_refusals(summary: &mut Summary, scenario: &Scenario) {
     let explain = |calibration: &mut Option<CalibrationScore>,
@@ -253,6 +252,7 @@ fn explain_refusals(summary: &mut Summary, scenario: &Scenario) {
     }
 }
 
+/// Uncertainty of the times of a solution against its reference.
 fn timing(scenario: &Scenario, run: &MethodRun) -> Option<TimeDoubt> {
     let SourceSpec::Solution(spec) = &scenario.source else { return None };
     let [speed_mps, acceleration_mps2, turning_radps] = run.observed.drift.moved.rates();

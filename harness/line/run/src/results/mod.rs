@@ -8,4 +8,4 @@ pub(crate) mod method;
 pub mod raw_counts;
 pub mod refusal;
 pub mod rotation;
-pub mod scores_text;
+mod scores_text;

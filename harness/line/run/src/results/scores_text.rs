@@ -8,7 +8,7 @@ use octant_score::summary::{
 
 /// Renders an alignment on one line: reference, duration, attitude, and the scores of the attitude.
 #[must_use]
-pub fn alignment_line(alignment: &AlignmentResult, units: &DisplayUnits) -> String {
+pub(super) fn alignment_line(alignment: &AlignmentResult, units: &DisplayUnits) -> String {
     let AlignmentResult { reference, duration_s, solution } = alignment;
     let degrees = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
     let scores =
@@ -25,7 +25,7 @@ pub fn alignment_line(alignment: &AlignmentResult, units: &DisplayUnits) -> Stri
 
 /// Renders the solution at the end of a calibration; `None` if neither errors nor σ are known.
 #[must_use]
-pub fn solution_line(solution: &SolutionScore, units: &DisplayUnits) -> Option<String> {
+pub(super) fn solution_line(solution: &SolutionScore, units: &DisplayUnits) -> Option<String> {
     Some(format!("    attitude at its end: {}", attitude_scores(solution, units)?))
 }
 
@@ -53,7 +53,7 @@ fn attitude_scores(solution: &SolutionScore, units: &DisplayUnits) -> Option<Str
 /// Renders the scores of a navigation, one line each for latitude, longitude, radial error, attitude and
 /// velocity.
 #[must_use]
-pub fn navigation_lines(n: &NavigationScore, units: &DisplayUnits) -> Vec<String> {
+pub(super) fn navigation_lines(n: &NavigationScore, units: &DisplayUnits) -> Vec<String> {
     let pair = |e: &ErrorScore, unit: ShownUnit| {
         let (max, rms, digits) = (unit.of(e.max), unit.of(e.rms), unit.decimals);
         format!("max {max:.digits$}, rms {rms:.digits$}")

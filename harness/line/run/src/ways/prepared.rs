@@ -61,6 +61,7 @@ pub enum PreparedError {
      realtime.pace = \"clock\" in the scenario"
 )]
 pub struct NeverLost;
+
 impl Failing for PreparedError {
     fn kind(&self) -> FailureKind {
         match self {

@@ -3,7 +3,6 @@
 use super::smoothed::RepeatedCalibration;
 use octant_calibration::CoreConfig;
 use octant_calibration::config::{Base, Kalman};
-
 use octant_sample::Mode;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_smoother::backward::SmoothedCalibration;

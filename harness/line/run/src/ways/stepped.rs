@@ -85,7 +85,7 @@ impl SteppedRun {
     /// get opened.
     ///
     /// # Errors
-    /// If it can't be set up, as [`super::run_method`].
+    /// If it can't be set up, as [`crate::run_method`].
     pub fn new(
         scenario: &Scenario,
         method: Method,

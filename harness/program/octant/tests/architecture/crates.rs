@@ -1,15 +1,12 @@
-//! The graph of crates: no circle, and nobody sees what he has to be blind to.
+//! The graph of crates: no circle, and no crate depends on one that it must know nothing of.
 
 use super::{Member, circle, graph, members};
 use std::collections::{BTreeMap, BTreeSet};
 
 #[test]
 fn the_graph_of_crates_has_no_circle() {
-    let members = members();
-    let built = members.iter().map(|(name, member)| (name.clone(), member.needs.clone())).collect();
-    assert_eq!(circle(&built), Vec::<String>::new());
-    // Nor through what tests need.
-    let tested = members
+    // Cargo itself refuses a circle of what is built, but not one through what tests need.
+    let tested = members()
         .iter()
         .map(|(name, member)| (name.clone(), &member.needs | &member.tests_need))
         .collect();

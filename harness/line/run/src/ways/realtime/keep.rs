@@ -1,4 +1,4 @@
-//! Records and watches the messages of the real-time thread.
+//! Records and observes the messages of the real-time thread.
 
 use super::entry::{Answer, Entry};
 use crate::bench::records::{Answered, Records};

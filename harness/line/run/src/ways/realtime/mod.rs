@@ -2,7 +2,7 @@
 //!
 //! `frames` keeps the results on the real-time thread: the loop waits in it for the frame and for
 //! answers, and it puts the results into a ring (`entry`). It allocates nothing and touches no file.
-//! `keep` runs on a second thread, which takes the entries out, records and watches. If the ring is
+//! `keep` runs on a second thread, which takes the entries out, records and observes. If the ring is
 //! full an entry is dropped and counted, and the run is inconclusive.
 //!
 //! The clock has no effect on computed values: an endpoint that answers in time gives the bits of a
