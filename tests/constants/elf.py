@@ -12,7 +12,7 @@ OURS = re.compile(
     r"\boctant_(earth|random|sample|calibration|faults|plant|statistics|requirements|scenario|score)::"
     r"|\boctant_(observe|campaign|run)::|\boctant_nightly::compare"
 )
-PICTURES = re.compile(r"\boctant_campaign_pages::|\boctant_run::watch::Watcher::gimbals")
+PICTURES = re.compile(r"\boctant_campaign_pages::|\boctant_run::observers::gimbals::")
 # What a conversion between integers and floating point needs on this processor: no number of ours.
 IDIOMS = {2.0**51, 2.0**52, 2.0**84, 2.0**63, 2.0**64, 2.0**31, 2.0**32, 2.0**53, 2.0**63 - 1024, 2.0**64 - 2048,
           2.0**32 - 1, 2.0**31 - 1}

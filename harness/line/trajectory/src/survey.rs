@@ -7,6 +7,8 @@ use std::path::Path;
 
 /// Share of the points that have to have a velocity, or an attitude, for the file to have one.
 const SHARE: f64 = 0.99;
+/// Part of a period by which the mean of many jittering stamps may be off.
+const JITTER: f64 = 1e-4;
 
 /// What a file holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,15 +42,22 @@ impl TrajectorySurvey {
         // By the majority vote of Boyer and Moore, which needs no memory: a time between two points that more
         // than half of them have is found.
         let (mut period_ns, mut votes) = (0, 0_u64);
+        // Intervals that are about that, and their sum.
+        let (mut alike, mut alike_ns) = (0_i64, 0_i64);
         while let Some(point) = reader.next()? {
             points += 1;
             first.get_or_insert(point);
             velocities += u64::from(point.velocity_mps.is_some());
             attitudes += u64::from(point.attitude_rad.is_some());
             if let Some((_, last_ns)) = span_ns {
-                let apart_ns = rounded(point.time_ns - last_ns);
-                if votes == 0 {
-                    period_ns = apart_ns;
+                let exactly_ns = point.time_ns - last_ns;
+                let apart_ns = rounded(exactly_ns);
+                if votes == 0 && apart_ns != period_ns {
+                    (period_ns, alike, alike_ns) = (apart_ns, 0, 0);
+                }
+                // Stamps with few digits have one of two values; over a gap nothing is told.
+                if 2 * (exactly_ns - period_ns).abs() < period_ns {
+                    (alike, alike_ns) = (alike + 1, alike_ns + exactly_ns);
                 }
                 votes = if apart_ns == period_ns { votes + 1 } else { votes.saturating_sub(1) };
             }
@@ -62,6 +71,7 @@ impl TrajectorySurvey {
         // A unit that sends on without a solution hasn't ended where its last point is.
         let heard_ns = reader.heard_ns().filter(|heard_ns| heard_ns - span_ns.1 > period_ns.max(1));
         let span_ns = (span_ns.0, heard_ns.unwrap_or(span_ns.1));
+        let period_ns = whole_rate(period_ns, alike_ns as f64 / alike.max(1) as f64);
         let most = |count: u64| count as f64 >= SHARE * points as f64;
         Ok(Self {
             scale: reader.scale(),
@@ -72,6 +82,20 @@ impl TrajectorySurvey {
             velocity: most(velocities),
             attitude: most(attitudes),
         })
+    }
+}
+
+/// The period that intervals with this mean have, which are about `about_ns`: that of a whole rate or a round time, if
+/// they are as near to it as stamps jitter.
+fn whole_rate(about_ns: i64, mean_ns: f64) -> i64 {
+    let near = |ns: f64| (mean_ns - ns).abs() <= JITTER * mean_ns;
+    let rate_hz = (1e9 / mean_ns).round().max(1.0);
+    if near(about_ns as f64) {
+        about_ns
+    } else if near(1e9 / rate_hz) {
+        (1e9 / rate_hz).round() as i64
+    } else {
+        mean_ns.round() as i64
     }
 }
 

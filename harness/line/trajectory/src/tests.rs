@@ -476,3 +476,27 @@ fn two_columns_of_one_name_are_refused_with_their_numbers() {
         "found two columns \"latitude_deg\", 2 and 4, expected one: say which by its number";
     assert!(found.contains(words), "{found}");
 }
+
+#[test]
+fn the_period_of_a_solution_is_that_of_its_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    // Rates, digits of the stamps, and gaps of a second.
+    for rate_hz in [1.0, 3.0, 6.0, 7.0, 12.0, 15.0, 20.0, 30.0, 50.0, 60.0, 100.0, 120.0, 200.0] {
+        for digits in [3, 6] {
+            let mut text = String::from("time_s,latitude_deg,longitude_deg\n");
+            for number in 0..3000 {
+                let gap_s = f64::from(number / 1000);
+                text += &format!("{:.digits$},10,20\n", f64::from(number) / rate_hz + gap_s);
+            }
+            let path = file(folder.path(), "rate.csv", text);
+            let survey = TrajectorySurvey::of(&path, &csv()).unwrap();
+            let expected_ns = (1e9 / rate_hz).round() as i64;
+            assert_eq!(survey.period_ns, expected_ns, "{rate_hz} Hz, {digits} digits");
+        }
+    }
+    // One that isn't a whole number of Hz.
+    let rows: String = (0..3000).map(|n| format!("{:.6},10,20\n", f64::from(n) * 0.0273)).collect();
+    let text = format!("time_s,latitude_deg,longitude_deg\n{rows}");
+    let survey = TrajectorySurvey::of(&file(folder.path(), "odd.csv", text), &csv()).unwrap();
+    assert_eq!(survey.period_ns, 27_300_000);
+}

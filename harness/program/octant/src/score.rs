@@ -107,10 +107,7 @@ pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Ver
         .last
         .map(|estimate| score(truth.as_ref(), &estimate.parameters, &estimate.sigma))
         .unwrap_or_default();
-    let plan = match method {
-        Method::Primary => scenario.calibration.as_ref(),
-        Method::Baseline => scenario.baseline.as_ref(),
-    };
+    let plan = scenario.calibration_of(method);
     let planned = plan.map(planned_of).unwrap_or_default();
     let scores = Scores {
         scenario: scenario.title.clone(),

@@ -138,7 +138,8 @@ fn found(path: &Path, text: Option<&str>, set: &[String]) -> Result<Vec<String>,
             octant_base::number::plain(survey.period_ns as f64 * 1e-9, 9)
         )));
     }
-    let rate = octant_base::number::plain(1e9 / survey.period_ns as f64, 9);
+    // With all digits, so that the period comes out as the whole number of ns that it is.
+    let rate = format!("{}", 1e9 / survey.period_ns as f64);
     let deg = |rad: f64| format!("{:.9} deg", rad.to_degrees());
     Ok(vec![
         format!("imu.rate={rate} Hz"),

@@ -118,6 +118,20 @@ fn longitudes_a_turn_apart_are_the_same_and_an_offset_may_be_negative() {
     assert!(error < 1e-5, "{error}");
 }
 
+#[test]
+fn rates_whose_period_is_no_whole_number_of_nanoseconds_are_scored() {
+    for rate_hz in [3.0, 7.0, 12.0, 60.0, 1.0 / 0.273] {
+        let folder = tempfile::tempdir().unwrap();
+        let here = folder.path();
+        let times = (0..600).map(|k| 10.0 + f64::from(k) / rate_hz);
+        std::fs::write(here.join("ref.csv"), rows(seconds(0, 300), circle, 0.0)).unwrap();
+        std::fs::write(here.join("ins.csv"), rows(times, drifting, 0.0)).unwrap();
+        std::fs::write(here.join("trial.toml"), REQUIRED).unwrap();
+        let ended = score(here, &["--scenario", "trial.toml", "--offset", "0 s"]);
+        assert_eq!(ended.status.code(), Some(0), "{rate_hz} Hz: {ended:?}");
+    }
+}
+
 /// A line of NovAtel's INSPVAS at a second of the Thursday of GPS week 2345, with the CRC of its manual.
 fn inspvas(second: f64, [latitude, longitude, north, east, heading]: [f64; 5]) -> String {
     let second = 345_600.0 + second;

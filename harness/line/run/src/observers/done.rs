@@ -78,10 +78,7 @@ impl PlannedWork {
         tells: Tells,
         samples: Option<u64>,
     ) -> Self {
-        let calibration = match method {
-            Method::Primary => scenario.calibration.as_ref(),
-            Method::Baseline => scenario.baseline.as_ref(),
-        };
+        let calibration = scenario.calibration_of(method);
         let stops = match calibration {
             Some(calibration) if tells.commands => stops(calibration, core),
             _ => Vec::new(),

@@ -31,10 +31,7 @@ impl FilteredSeries {
     /// squares has no attitude over time.
     #[must_use]
     pub fn of(scenario: &Scenario, method: Method) -> Option<Self> {
-        let calibration = match method {
-            Method::Primary => scenario.calibration.as_ref(),
-            Method::Baseline => scenario.baseline.as_ref(),
-        }?;
+        let calibration = scenario.calibration_of(method)?;
         let filters = matches!(calibration.estimator, Estimator::Kalman(_));
         let period_ns = (calibration.duration_s * 1e9) as u64 / SIGMA_POINTS;
         filters.then(|| Self {

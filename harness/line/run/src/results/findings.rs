@@ -112,10 +112,7 @@ fn of_unit(scenario: &Scenario, run: &MethodRun, method: Method, place: &str) ->
         return findings;
     }
     let mut reasons = run.observed.answers.do_not_follow();
-    let plan = match method {
-        Method::Primary => scenario.calibration.as_ref(),
-        Method::Baseline => scenario.baseline.as_ref(),
-    };
+    let plan = scenario.calibration_of(method);
     reasons.extend(plan.and_then(|plan| not_estimated(scenario, plan, run)));
     reasons.extend(plan.and_then(|plan| not_white(plan, run)));
     let inconclusive = |reason| Finding::of_unit(Verdict::Inconclusive, format!("{reason}{place}"));

@@ -95,11 +95,7 @@ impl MethodRun {
             recorder.event(Event::Refused { reason: reason.clone() });
         }
         let done = observers.done.work();
-        let calibration = match method {
-            Method::Primary => scenario.calibration.as_ref(),
-            Method::Baseline => scenario.baseline.as_ref(),
-        }
-        .map(|plan| {
+        let calibration = scenario.calibration_of(method).map(|plan| {
             let known = truth.map(|draws| &draws.parameters);
             let parameters = score(known, &estimate.parameters, &estimate.sigma);
             let all = truth.map(|draws| scenario.true_further(draws));

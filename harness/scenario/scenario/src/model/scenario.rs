@@ -241,14 +241,19 @@ impl Scenario {
         Ok(self.with_faults(|index| keep.get(index).copied().unwrap_or(false)))
     }
 
+    /// The calibration of a method.
+    #[must_use]
+    pub fn calibration_of(&self, method: Method) -> Option<&CalibrationSpec> {
+        match method {
+            Method::Primary => self.calibration.as_ref(),
+            Method::Baseline => self.baseline.as_ref(),
+        }
+    }
+
     /// Name of a method, as terminal, tables and reports show it.
     #[must_use]
     pub fn method_label(&self, method: Method) -> String {
-        let calibration = match method {
-            Method::Primary => self.calibration.as_ref(),
-            Method::Baseline => self.baseline.as_ref(),
-        };
-        let Some(calibration) = calibration else {
+        let Some(calibration) = self.calibration_of(method) else {
             return match &self.source {
                 SourceSpec::Solution(spec) => format!("solution {}", spec.solution.file.short()),
                 _ => "navigation alone".to_owned(),
