@@ -8,6 +8,7 @@ use clap::Args;
 use octant_scenario::{FilePlaces, Scenario, SourceSpec};
 use octant_trajectory::{TrajectorySurvey, point::SECOND_NS};
 use octant_verdict::Verdict;
+use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -145,7 +146,8 @@ fn found(path: &Path, text: Option<&str>, set: &[String]) -> Result<Vec<String>,
         format!("imu.rate={rate} Hz"),
         format!("record.rate={rate} Hz"),
         format!("site.latitude={}", deg(survey.first.latitude_rad)),
-        format!("site.longitude={}", deg(survey.first.longitude_rad)),
+        // Files may count from 0 to 360°, the scenario from -180 to 180.
+        format!("site.longitude={}", deg((survey.first.longitude_rad + PI).rem_euclid(TAU) - PI)),
         format!("site.height={:.3} m", survey.first.height_m),
     ])
 }
