@@ -88,6 +88,7 @@ fn noises() -> [(&'static str, Coefficients); 6] {
     ]
 }
 
+#[allow(clippy::print_stdout, reason = "figures of the page")]
 fn hold(of: &str, (alarms, channels): (usize, usize)) {
     println!("{of}: {alarms} of {channels} channels have a line");
     let expected = FALSE_ALARM * channels as f64;
