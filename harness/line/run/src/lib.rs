@@ -3,7 +3,7 @@
 //! | folder | what it has |
 //! |---|---|
 //! | [`observers`] | what is observed of a run as it goes by, one small type for each subject |
-//! | [`bench`] | the one owner of a run: source, faults, endpoint, recorder and observers, with the loop over samples |
+//! | [`mod@bench`] | the one owner of a run: source, faults, endpoint, recorder and observers, with the loop over samples |
 //! | `results` | what is said of a run that ended: scores, findings, summary and report |
 //! | `ways` | the ways to run: once, with a twin, branched, by the clock, stepped by a host, replayed; each says when to step |
 //!

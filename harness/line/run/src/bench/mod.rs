@@ -1,7 +1,7 @@
 //! The one owner of a run: source, faults, endpoint, recorder and observers.
 //!
 //! A [`Bench`] is opened from a [`Plan`], which names each policy once. It takes steps; whoever holds it says only
-//! *when*: to the end, until something is reached, one at a time, by the clock. [`Bench::branch`] makes a second run that
+//! *when*: to the end, until something is reached, one at a time, by the clock. `branch` makes a second run that
 //! goes on from here. [`Bench::close`] ends it. [`steps`] has the loop, `records` what is kept.
 
 pub(crate) mod attended;
