@@ -173,6 +173,12 @@ impl Points for NmeaReader {
     fn heard_ns(&self) -> Option<i64> {
         self.heard_ns
     }
+
+    fn choice(&self) -> Option<&'static str> {
+        self.velocity_leads.then_some(
+            "each VTG goes to the position after it: its velocities fit the change of position there, not before it",
+        )
+    }
 }
 
 /// Finds the day of the first point.

@@ -16,4 +16,8 @@ pub(crate) trait Points: Send {
     fn heard_ns(&self) -> Option<i64> {
         None
     }
+    /// Choice that was made in reading the file, in words that follow its name; `None`: none.
+    fn choice(&self) -> Option<&'static str> {
+        None
+    }
 }

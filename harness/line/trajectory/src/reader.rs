@@ -68,6 +68,12 @@ impl TrajectoryReader {
         self.points.scale()
     }
 
+    /// Choice that was made in reading the file, in words that follow its name; `None`: none.
+    #[must_use]
+    pub fn choice(&self) -> Option<&'static str> {
+        self.points.choice()
+    }
+
     /// Latest time that the file told so far, if that of a point that isn't valid counts too.
     pub(crate) fn heard_ns(&self) -> Option<i64> {
         self.points.heard_ns()

@@ -14,6 +14,8 @@ const RECORD: usize = 8 * FIELDS;
 
 /// Seconds of a GPS week.
 const WEEK_S: f64 = 604_800.0;
+/// Longest gap over the end of a week.
+const WEEK_GAP_MAX_S: f64 = 3600.0;
 
 pub(crate) struct SbetReader {
     file: BufReader<File>,
@@ -66,8 +68,11 @@ impl Points for SbetReader {
             let place = self.place();
             return Err(format!("{place}: found time {time_s} s, expected seconds of a GPS week"));
         }
-        // Seconds that begin again with the week; some files count on.
-        if time_s + 0.5 * WEEK_S < self.last_s && self.last_s <= WEEK_S {
+        // Seconds that begin again with the week; some files count on. Other steps back are none of the week.
+        if time_s < self.last_s
+            && self.last_s <= WEEK_S
+            && time_s + WEEK_S - self.last_s < WEEK_GAP_MAX_S
+        {
             self.weeks_s += WEEK_S;
         }
         self.last_s = time_s;

@@ -397,7 +397,10 @@ fn velocities_go_to_their_own_positions_in_any_order_of_the_cycle() {
     ];
     for (name, cycle) in cycles {
         let text: String = (0..40).map(cycle).collect();
-        let points = all(&file(folder.path(), "a.nmea", text), &TrajectoryFormat::Nmea).unwrap();
+        let path = file(folder.path(), "a.nmea", text);
+        let reader = TrajectoryReader::open(&path, &TrajectoryFormat::Nmea).unwrap();
+        assert_eq!(reader.choice().is_some(), matches!(name, "before" | "first"), "{name}");
+        let points = all(&path, &TrajectoryFormat::Nmea).unwrap();
         assert_eq!(points.len(), 40, "{name}");
         for (second, point) in (0..).zip(&points) {
             let found = point.velocity_mps.unwrap_or_else(|| panic!("{name}: {second}"));
@@ -464,6 +467,8 @@ fn a_gps_week_ends_in_an_sbet() {
     // Files that count on, and time that runs back within a week.
     assert_eq!(seconds(&[604_799.0, 604_800.0, 604_801.0]).unwrap(), [604_799, 604_800, 604_801]);
     assert!(seconds(&[1000.0, 999.0]).unwrap_err().contains("1.000000000 s before"));
+    // Two recordings, one after the other in a file.
+    assert!(seconds(&[500_000.0, 10.0]).unwrap_err().contains("before the point before it"));
 }
 
 #[test]

@@ -25,6 +25,7 @@ use octant_run::{Ended, MethodRun, Prepared, Run, prepared, raw_counts};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Scenario, SourceSpec};
 use octant_score::junit::junit;
+use octant_trajectory::TrajectoryReader;
 use octant_verdict::Verdict;
 use octant_verdict::equipment::Day;
 use std::path::{Path, PathBuf};
@@ -82,6 +83,7 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
     let tasks = prepared::tasks(scenario, twins);
     let fmus = octant_evidence::fmus(scenario, tasks, &opened).map_err(without_fmus)?;
     let prepared = prepare(scenario, seed, twins, &opened)?;
+    tell_choices(scenario)?;
     if request.stop_when_lost {
         prepared.stop_when_lost().map_err(Failure::input)?;
     }
@@ -105,6 +107,19 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
         }
     };
     asked.conclude(request, begun, runs, answers)
+}
+
+/// Tells what was chosen in reading the files of a solution.
+fn tell_choices(scenario: &Scenario) -> Result<(), Failure> {
+    let SourceSpec::Solution(spec) = &scenario.source else { return Ok(()) };
+    for trajectory in [&spec.solution, &spec.reference] {
+        let path = trajectory.file.path(&scenario.folder).map_err(Failure::input)?;
+        let reader = TrajectoryReader::open(&path, &trajectory.format).map_err(Failure::input)?;
+        if let Some(choice) = reader.choice() {
+            note!("octant: {}: {choice}", path.display());
+        }
+    }
+    Ok(())
 }
 
 /// Records of the operator of a run, and the reasons why they make it no evidence.

@@ -21,7 +21,7 @@ use std::sync::atomic::Ordering;
 pub struct Closed {
     /// How it ended.
     pub ended: Ended,
-    /// What the parts of the bench told.
+    /// Reports of the bench's parts.
     pub bench: BenchEnd,
     /// Answer to the end of the source.
     pub last: Option<Output>,

@@ -1,4 +1,4 @@
-//! What the parts of the bench told over a run and at its end.
+//! Reports of the bench's parts: time keeping, link, instrument and power.
 
 use super::ended::RunError;
 use octant_realtime::schedule::Granted;
@@ -14,7 +14,7 @@ pub struct TimeKeeping {
     pub granted: Granted,
 }
 
-/// What the parts of the bench told at the end.
+/// Reports of the bench's parts at the end of a run.
 #[derive(Debug, Default)]
 pub struct BenchEnd {
     /// Failure in the middle that ended the run.

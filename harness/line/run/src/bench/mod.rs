@@ -50,7 +50,7 @@ pub struct Bench<S, E, K = Records<'static>> {
     /// Faults of the run itself.
     pub faulted: Option<Faulted>,
     pub(crate) steps: Steps,
-    /// What keeps the results.
+    /// Keeper of the results.
     pub keeper: K,
     /// How the run ended; `None`: it goes on.
     pub ended: Option<Result<Ended, RunError>>,

@@ -1,4 +1,4 @@
-//! What is run, and the policies of the run: each has its name here and nowhere else.
+//! Plan of a run: its subject, and its policies, each named once.
 
 use super::error::SetupError;
 use super::faulted::Faulted;

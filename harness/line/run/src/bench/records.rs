@@ -1,4 +1,4 @@
-//! What is kept of a run: its recording and what was observed of it. In simulated time it is kept at once.
+//! Records of a run: its recording and its observers. In simulated time each answer is recorded at once.
 
 use super::attended::Attended;
 use super::ended::{Ended, RunError, over};

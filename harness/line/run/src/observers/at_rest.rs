@@ -94,7 +94,7 @@ pub struct AtRest {
     coarse: AllanCascade<6>,
 }
 
-/// What the samples of the present block and the unit tell.
+/// Flags of the present block, and the unit's word on moves.
 #[derive(Clone, Copy, Debug)]
 struct BlockSigns {
     /// Flags of the samples.

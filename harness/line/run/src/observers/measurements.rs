@@ -9,7 +9,7 @@ use octant_score::points::{HealthEvent, NisPoint};
 /// Maximum number of NIS points; beyond, every second one is dropped.
 const NIS_POINTS_MAX: usize = 50_000;
 
-/// What the core told about its measurements.
+/// Measurements as the core reported them.
 #[derive(Clone, Debug)]
 pub struct Measurements {
     stride: u64,

@@ -1,4 +1,4 @@
-//! What is observed of a run as it goes by.
+//! Observers of a run as it goes by.
 //!
 //! Each observer has one subject: [`answers`] the rules of the unit, [`done`] the work completed, [`moments`] the
 //! solution at the ends of alignment and calibration, [`drift`] the navigation against the truth, [`convergence`] the
@@ -69,7 +69,7 @@ pub struct Observers {
     pub gimbals: GimbalSeries,
     /// Trace for the comparison with a twin, where there is one.
     pub trace: Option<RunTrace>,
-    /// What only a report shows.
+    /// Series for a report alone.
     pub charts: Charts,
 }
 

@@ -27,7 +27,7 @@ pub struct MethodRun {
     pub label: String,
     /// End of the loop.
     pub ended: Ended,
-    /// What the parts of the bench told at the end.
+    /// Reports of the bench's parts.
     pub bench: BenchEnd,
     /// Result of the alignment; `None` if the unit never had an attitude.
     pub alignment: Option<AlignmentResult>,
