@@ -118,6 +118,8 @@ fn channels_have_the_names_of_the_files_columns() {
     {
         assert!(page.contains(words), "{words}");
     }
+    // One legend for the small charts of a section: in each of them it would leave no room for the title.
+    assert_eq!(page.matches("<span class=\"legend\">").count(), 2);
     let (out, _) = call(&["characterise", "unit.toml", "--no-twin", "--json"], 0);
     let json: serde_json::Value = serde_json::from_str(&out).unwrap();
     let names =

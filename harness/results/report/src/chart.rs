@@ -27,7 +27,7 @@ impl Chart {
             div.chart {
                 div.caption {
                     span.ylabel { (self.y_label) }
-                    @if self.legend { (self.legend_markup()) }
+                    @if self.legend { (self.keys()) }
                 }
                 svg viewBox={ "0 0 " (self.width) " " (self.height) } role="img"
                     aria-label=(self.title) {
@@ -51,7 +51,9 @@ impl Chart {
         }
     }
 
-    fn legend_markup(&self) -> Markup {
+    /// Renders the legend alone, for small charts that share one.
+    #[must_use]
+    pub fn keys(&self) -> Markup {
         // The main line is drawn last, on top, and named first.
         html! {
             span.legend {

@@ -124,7 +124,7 @@ fn terms(result: &Characterisation) -> Markup {
 fn small(title: &str, x_label: &str, y_label: &str) -> Chart {
     let mut chart = Chart::new(title, x_label, y_label);
     (chart.width, chart.height) = (360.0, 230.0);
-    (chart.hours, chart.decades, chart.logarithmic) = (false, true, true);
+    (chart.hours, chart.decades, chart.logarithmic, chart.legend) = (false, true, true, false);
     chart
 }
 
@@ -132,9 +132,17 @@ fn line(label: &str, role: Role, points: Vec<[f64; 2]>) -> Line {
     Line { label: label.to_owned(), role, points }
 }
 
+/// Legend of the small charts below it: that of the channel with most to show.
+fn shared_legend(result: &Characterisation, chart: impl Fn(&ChannelAnalysis) -> Chart) -> Markup {
+    let charts = result.analysis.channels.iter().map(chart);
+    let fullest = charts.max_by_key(|chart| chart.lines.len());
+    html! { @if let Some(chart) = fullest { div.chart { div.caption { (chart.keys()) } } } }
+}
+
 fn deviations(result: &Characterisation) -> Markup {
     html! {
         p.hint { "Overlapping Allan deviation with its interval of 95 %. Modified Allan and Hadamard deviations are in the JSON." }
+        (shared_legend(result, |channel| deviation_chart("", channel, result)))
         @for (triad, channels) in triads(result) {
             div.multiples { @for channel in channels {
                 @let title = format!("{triad} {}, {}", axis(result, channel), rate_unit(channel).0);
@@ -201,6 +209,7 @@ fn spectra(result: &Characterisation) -> Markup {
         @if result.analysis.segments == 0 { p { "Not told: no stretch at rest has a whole segment." } }
         @else { p.hint { "Square root of the one-sided density, means over thirds of an octave, "
             (result.analysis.segments) " segments of " (plain(1.0 / result.analysis.bin_hz, 4)) " s." } }
+        (shared_legend(result, |channel| spectrum_chart("", channel, result)))
         @for (triad, channels) in triads(result) {
             div.multiples { @for channel in channels {
                 @let title = format!("{triad} {}, {}/√Hz", axis(result, channel), rate_unit(channel).0);
