@@ -174,6 +174,7 @@ impl Parts {
             planned: None,
             done: None,
             faults: self.fired.iter().map(fault).collect(),
+            inputs: Vec::new(),
             altered_streams: None,
             method: "eight".to_owned(),
             calibration: Some(calibration(self.refused)),

@@ -10,6 +10,8 @@
 //! of the body, counts increments and carries their remainders, and continues sequence and time across
 //! roll-overs.
 //!
+//! [`timeline`] makes times and intervals of stamps, counters and a rate, for recordings and live units alike.
+//!
 //! [`align`] finds the offset between a unit's clock and the host's, from stamps and arrivals alone,
 //! [`pulses`] from pulses at the unit's whole seconds.
 //!
@@ -47,6 +49,7 @@ pub mod pulses;
 pub mod rollover;
 pub mod sbg;
 mod stamp_scale;
+pub mod timeline;
 pub mod vectornav;
 pub mod xsens;
 

@@ -21,3 +21,4 @@ mod rollover;
 mod round_trip;
 mod sampler;
 mod stamp_scale;
+mod timeline;

@@ -8,6 +8,7 @@ use super::{
     Epoch, LiveSource, LogSource, PlantSource, Replay, SolutionSource, Source, SourceError,
     TextSource,
 };
+use octant_account::Account;
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
@@ -130,6 +131,10 @@ impl Source for AnySource {
         broken: Option<&str>,
     ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         each!(&mut self.kind, source => source.conclude(broken))
+    }
+
+    fn accounts(&self) -> Vec<Account> {
+        each!(&self.kind, source => source.accounts())
     }
 
     fn ahead(&self) -> Option<Box<dyn Source + Send>> {

@@ -1,9 +1,10 @@
 //! An MCAP file that octant did not write, as a source: a mapping names topic and fields.
 
-use super::counting::{Counting, Measured};
+use super::counting::{Counted, Counting, Measured, RowWords};
 use super::messages::{TopicMessage, TopicMessages};
 use super::temperature::TemperatureCheck;
 use super::{Epoch, SourceError};
+use octant_account::Account;
 use octant_recorder::event::BenchRecord;
 use octant_scenario::recorded::{MappedField, McapMapping, TemperatureUnit};
 use std::io::Read;
@@ -19,14 +20,16 @@ pub(super) struct Foreign<R> {
     /// Unit of the temperature, which is the last of the numbers.
     temperature: Option<TemperatureUnit>,
     temperatures: TemperatureCheck,
-    /// Stamp, ns, and temperature of the last message.
-    last: (u64, f64),
 }
 
 impl<R: Read> Foreign<R> {
     pub(super) fn new(source: R, path: &str, mapping: &McapMapping) -> Result<Self, SourceError> {
         let fail = |reason: String| SourceError::Read { path: path.into(), reason };
-        let nominal_ns = super::nominal_period_ns(mapping.nominal_rate_hz).map_err(fail)?;
+        let words = RowWords {
+            unit: ["message", "messages"],
+            at: "message",
+            other_times: "another time_field, or none for the times of the log, may have the times",
+        };
         // The order of the numbers: gyro, accelerometer, gimbal.
         let fields: Vec<&MappedField> = mapping
             .gyro
@@ -42,10 +45,15 @@ impl<R: Read> Foreign<R> {
                 .map_err(fail)?,
             scales: fields.iter().map(|field| (field.offset, field.scale)).collect(),
             has_gimbal: mapping.gimbal.is_some(),
-            counting: Counting::new(mapping.quantity, nominal_ns, mapping.split).map_err(fail)?,
+            counting: Counting::new(
+                mapping.quantity,
+                mapping.nominal_rate_hz,
+                mapping.split,
+                words,
+            )
+            .map_err(fail)?,
             temperature: mapping.temperature.as_ref().map(|field| field.unit),
             temperatures: TemperatureCheck::default(),
-            last: (0, f64::NAN),
         })
     }
 
@@ -63,6 +71,11 @@ impl<R: Read> Foreign<R> {
         self.counting.bench(&self.path)
     }
 
+    /// Account of the messages.
+    pub(super) fn account(&self) -> Account {
+        self.counting.account(&self.path, self.messages.outside())
+    }
+
     pub(super) fn saturated(&self) -> u64 {
         self.counting.saturated()
     }
@@ -74,21 +87,32 @@ impl<R: Read> Foreign<R> {
     /// Temperature of the last message, °C.
     pub(super) fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
         let Some(unit) = self.temperature else { return Ok(None) };
-        let (time_ns, value) = self.last;
-        self.temperatures.take(time_ns, value, unit).map(Some).map_err(|reason| {
+        let Some(row) = self.counting.row() else { return Ok(None) };
+        let (place, time_ns) = (row.place, row.stamp_ns.unwrap_or_default());
+        self.temperatures.take(time_ns, row.temperature, unit).map(Some).map_err(|reason| {
             let field = self.messages.path(self.scales.len());
-            let reason = self.messages.in_message(&format!("field {field}: {reason}"));
+            let reason =
+                self.messages.in_message_number(place, &format!("field {field}: {reason}"));
             SourceError::Read { path: self.path.clone(), reason }
         })
     }
 
     fn advance(&mut self) -> Result<Option<Epoch>, String> {
         loop {
-            if let Some(sample) = self.counting.next() {
-                return Ok(Some(Epoch { sample, aiding: None }));
+            let counted = self
+                .counting
+                .next()
+                .map_err(|error| self.messages.in_message_number(error.place, &error.reason))?;
+            match counted {
+                Counted::Sample(sample) => return Ok(Some(Epoch { sample, aiding: None })),
+                Counted::End => return Ok(None),
+                Counted::More => match self.messages.next()? {
+                    Some(message) => {
+                        self.take(&message).map_err(|reason| self.messages.in_message(&reason))?
+                    }
+                    None => self.counting.end(),
+                },
             }
-            let Some(message) = self.messages.next()? else { return Ok(None) };
-            self.take(&message).map_err(|reason| self.messages.in_message(&reason))?;
         }
     }
 
@@ -105,13 +129,15 @@ impl<R: Read> Foreign<R> {
             values[index] = value;
         }
         let temperature = message.numbers.get(self.scales.len());
-        self.last = (message.time_ns, temperature.map_or(f64::NAN, |number| number.real()));
         let [gx, gy, gz, ax, ay, az, azimuth, roll] = values;
-        self.counting.begin(Measured {
-            time_ns: message.time_ns,
+        self.counting.push(Measured {
+            place: self.messages.number(),
+            stamp_ns: Some(message.time_ns),
             gyro: [gx, gy, gz],
             accel: [ax, ay, az],
             gimbal_rad: self.has_gimbal.then_some([azimuth, roll]),
-        })
+            temperature: temperature.map_or(f64::NAN, |number| number.real()),
+        });
+        Ok(())
     }
 }

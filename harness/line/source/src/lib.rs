@@ -24,6 +24,7 @@ mod solution;
 mod temperature;
 mod text;
 mod traffic;
+mod triads;
 
 pub use any::AnySource;
 pub use from_scenario::{check_live, open, open_with};
@@ -34,6 +35,7 @@ pub use replay::Replay;
 pub use solution::SolutionSource;
 pub use text::TextSource;
 
+use octant_account::Account;
 use octant_base::failing::{Failing, FailureKind};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
@@ -104,6 +106,12 @@ pub trait Source {
         (None, None)
     }
 
+    /// Returns the accounts of what the source read from outside; those of its references follow those of its
+    /// samples. Known only at the end.
+    fn accounts(&self) -> Vec<Account> {
+        Vec::new()
+    }
+
     /// Returns a copy that goes on from here by itself, where the source is a simulation of its own.
     fn ahead(&self) -> Option<Box<dyn Source + Send>> {
         None
@@ -172,15 +180,6 @@ impl Failing for SourceError {
             }
             Self::TableStopped { .. } | Self::Gone { .. } => FailureKind::Bench,
         }
-    }
-}
-
-/// Returns the period of a nominal rate, rounded to a nanosecond.
-fn nominal_period_ns(rate_hz: f64) -> Result<u64, String> {
-    if rate_hz.is_finite() && (1e-3..=1e8).contains(&rate_hz) {
-        Ok((1e9 / rate_hz).round() as u64)
-    } else {
-        Err(format!("nominal rate is {rate_hz} Hz, expected 0.001 to 1e8 Hz"))
     }
 }
 

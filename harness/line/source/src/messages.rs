@@ -2,6 +2,8 @@
 
 use super::fields::{Definition, FieldDecoder, FieldPath, Number};
 use mcap::records::{Record, op};
+use octant_account::OutsideClock;
+use octant_instruments::align::ClockAlignment;
 use octant_recorder::records::{FileEnd, Records};
 use octant_scenario::recorded::{MappedStamp, TimeUnit};
 use std::collections::{BTreeSet, HashMap};
@@ -28,6 +30,10 @@ pub(super) struct TopicMessages<R> {
     decoders: HashMap<u16, FieldDecoder>,
     topics: BTreeSet<String>,
     messages: u64,
+    /// Stamps against the times at which the messages were logged.
+    logged: Box<ClockAlignment>,
+    /// True once a stamp isn't the time of its log.
+    has_own_stamps: bool,
 }
 
 /// One record of the container, reduced to the parts that this reader needs.
@@ -65,6 +71,8 @@ impl<R: Read> TopicMessages<R> {
             decoders: HashMap::new(),
             topics: BTreeSet::new(),
             messages: 0,
+            logged: Box::new(ClockAlignment::new()),
+            has_own_stamps: false,
         })
     }
 
@@ -79,7 +87,17 @@ impl<R: Read> TopicMessages<R> {
 
     /// Adds the place of the last message to a reason.
     pub(super) fn in_message(&self, reason: &str) -> String {
-        format!("message {} on {}: {reason}", self.messages, self.topic)
+        self.in_message_number(self.messages, reason)
+    }
+
+    /// Adds the place of a message that was read before to a reason.
+    pub(super) fn in_message_number(&self, number: u64, reason: &str) -> String {
+        format!("message {number} on {}: {reason}", self.topic)
+    }
+
+    /// Number of the last message, from 1.
+    pub(super) const fn number(&self) -> u64 {
+        self.messages
     }
 
     /// Returns the next message; `None` at the end of the file.
@@ -117,8 +135,19 @@ impl<R: Read> TopicMessages<R> {
         }
     }
 
+    /// Clock of the stamps against the one that logged them; `None` where they are one.
+    pub(super) fn outside(&self) -> Option<OutsideClock> {
+        let estimate = self.logged.estimate().filter(|_| self.has_own_stamps)?;
+        Some(OutsideClock {
+            name: "the times of the log".to_owned(),
+            fast_ppm: -1e6 * estimate.skew?,
+            // A corner of the hull may be as late as the others are.
+            sigma_ppm: Some(1e-3 * estimate.late_mean_ns / estimate.span_s),
+        })
+    }
+
     fn take(
-        &self,
+        &mut self,
         log_ns: u64,
         publish_ns: u64,
         mut numbers: Vec<Number>,
@@ -129,6 +158,10 @@ impl<R: Read> TopicMessages<R> {
             MappedStamp::PublishTime => publish_ns,
             MappedStamp::Field { unit, .. } => stamp_ns(&stamps, unit)?,
         };
+        if matches!(self.stamp, MappedStamp::Field { .. }) {
+            self.has_own_stamps |= time_ns != log_ns;
+            self.logged.add(time_ns, log_ns);
+        }
         Ok(TopicMessage { time_ns, numbers })
     }
 

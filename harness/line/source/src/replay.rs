@@ -5,6 +5,7 @@
 
 use super::foreign::Foreign;
 use super::{Epoch, Source, SourceError};
+use octant_account::Account;
 use octant_plant::Truth;
 use octant_recorder::Samples;
 use octant_recorder::event::BenchRecord;
@@ -149,6 +150,13 @@ impl Source for Replay {
         match &self.kind {
             Kind::Octant { .. } => None,
             Kind::Foreign(foreign) => foreign.gaps(),
+        }
+    }
+
+    fn accounts(&self) -> Vec<Account> {
+        match &self.kind {
+            Kind::Octant { .. } => Vec::new(),
+            Kind::Foreign(foreign) => vec![foreign.account()],
         }
     }
 

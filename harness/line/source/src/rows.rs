@@ -192,10 +192,12 @@ impl Rows {
     }
 
     pub(super) fn error(&self, reason: String) -> SourceError {
-        SourceError::Read {
-            path: self.path.clone(),
-            reason: format!("line {}: {reason}", self.line),
-        }
+        self.error_at(self.line, &reason)
+    }
+
+    /// Adds the place of a line that was read before to a reason.
+    pub(super) fn error_at(&self, line: u64, reason: &str) -> SourceError {
+        SourceError::Read { path: self.path.clone(), reason: format!("line {line}: {reason}") }
     }
 
     fn read_line(&mut self) -> Result<bool, SourceError> {

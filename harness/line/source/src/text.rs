@@ -1,9 +1,10 @@
 //! Delimited text of a real instrument as a source.
 
-use super::counting::{Counting, Measured};
+use super::counting::{Counted, Counting, CountingError, Measured, RowWords};
 use super::rows::Rows;
 use super::temperature::TemperatureCheck;
-use super::{Epoch, Source, SourceError, nominal_period_ns};
+use super::{Epoch, Source, SourceError};
+use octant_account::Account;
 use octant_base::number::counted;
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
@@ -15,18 +16,15 @@ use std::path::Path;
 
 /// Streams delimited text.
 ///
-/// The increment of an interval is its rate times the time since the previous stamp, and times the period for the first
-/// row and for a row after a gap (more than one and a half periods); the remainder after rounding to counts is carried. A value that
-/// does not fit a count saturates, is flagged in the sample, and is counted.
+/// The increment of an interval is its rate times the interval by the [fitted](octant_instruments::timeline) stamps; the
+/// remainder after rounding to counts is carried. A value that does not fit a count saturates, is flagged in the sample, and is
+/// counted.
 pub struct TextSource {
     first: File,
     /// File of the accelerometers, where it is a second one.
     second: Option<File>,
-    period_ns: u64,
     counting: Counting,
     rows: u64,
-    /// Stamp of the present row, ns.
-    time_ns: u64,
     temperatures: TemperatureCheck,
 }
 
@@ -59,15 +57,18 @@ impl TextSource {
             TextFiles::Split { gyro, accelerometer } => (gyro, Some(accelerometer)),
         };
         let fail = |reason| SourceError::Read { path: path.display().to_string(), reason };
-        let period_ns = nominal_period_ns(mapping.nominal_rate_hz).map_err(fail)?;
-        let counting = Counting::new(mapping.quantity, period_ns, mapping.split).map_err(fail)?;
+        let words = RowWords {
+            unit: ["row", "rows"],
+            at: "line",
+            other_times: "time_column = \"none\" and the rate of the rows leave the stamps out",
+        };
+        let (rate_hz, split) = (mapping.nominal_rate_hz, mapping.split);
+        let counting = Counting::new(mapping.quantity, rate_hz, split, words).map_err(fail)?;
         Ok(Self {
             first: File::open(path, mapping, true, second.is_none())?,
             second: second.map(|path| File::open(path, mapping, false, true)).transpose()?,
-            period_ns,
             counting,
             rows: 0,
-            time_ns: 0,
             temperatures: TemperatureCheck::default(),
         })
     }
@@ -78,13 +79,17 @@ impl TextSource {
         self.counting.saturated()
     }
 
+    fn placed(&self, error: CountingError) -> SourceError {
+        self.first.rows.error_at(error.place, &error.reason)
+    }
+
     fn advance(&mut self) -> Result<Option<Epoch>, SourceError> {
         loop {
-            if let Some(sample) = self.counting.next() {
-                return Ok(Some(Epoch { sample, aiding: None }));
-            }
-            if !self.read_row()? {
-                return Ok(None);
+            match self.counting.next().map_err(|error| self.placed(error))? {
+                Counted::Sample(sample) => return Ok(Some(Epoch { sample, aiding: None })),
+                Counted::End => return Ok(None),
+                Counted::More if self.read_row()? => {}
+                Counted::More => self.counting.end(),
             }
         }
     }
@@ -108,12 +113,10 @@ impl TextSource {
             return Ok(false);
         }
         self.rows += 1;
-        let time_ns = match self.first.time_ns()? {
-            Some(time_ns) => time_ns,
-            None => self.rows.saturating_mul(self.period_ns),
-        };
+        let stamp_ns = self.first.time_ns()?;
         if let Some(second) = &self.second
-            && let Some(there) = second.time_ns()?.filter(|there| *there != time_ns)
+            && let Some((there, time_ns)) = second.time_ns()?.zip(stamp_ns)
+            && there != time_ns
         {
             return Err(second.rows.error(format!(
                 "stamp {there} ns, expected {time_ns} ns as in {} line {}",
@@ -125,17 +128,18 @@ impl TextSource {
             (Some(second), _) => second.values(second.accel)?,
             (None, accel) => self.first.values(accel)?,
         };
-        self.time_ns = time_ns;
         let row = Measured {
-            time_ns,
+            place: self.first.rows.line(),
+            stamp_ns,
             gyro: self.first.values(self.first.gyro)?,
             accel,
             gimbal_rad: match self.first.gimbal {
                 Some(gimbal) => Some(self.first.values(Some(gimbal))?),
                 None => None,
             },
+            temperature: self.first.temperature(),
         };
-        self.counting.begin(row).map_err(|reason| self.first.rows.error(reason))?;
+        self.counting.push(row);
         Ok(true)
     }
 }
@@ -151,10 +155,12 @@ impl Source for TextSource {
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
         let Some((index, unit)) = self.first.temperature else { return Ok(None) };
-        let rows = &self.first.rows;
-        let value = rows.number(index)?;
-        let checked = self.temperatures.take(self.time_ns, value, unit);
-        checked.map(Some).map_err(|reason| rows.column_error(index, reason))
+        let Some(row) = self.counting.row() else { return Ok(None) };
+        let (place, time_ns) = (row.place, row.stamp_ns.unwrap_or_default());
+        let checked = self.temperatures.take(time_ns, row.temperature, unit);
+        checked.map(Some).map_err(|reason| {
+            self.placed(CountingError { place, reason: format!("column {}: {reason}", index + 1) })
+        })
     }
 
     fn samples_total(&self) -> Option<u64> {
@@ -163,6 +169,10 @@ impl Source for TextSource {
 
     fn cut_short(&self) -> Option<String> {
         self.counting.cut_short(self.first.rows.path())
+    }
+
+    fn accounts(&self) -> Vec<Account> {
+        vec![self.counting.account(self.first.rows.path(), None)]
     }
 
     fn conclude(
@@ -219,6 +229,12 @@ impl File {
         let gyro = if gyro { Some(three(&mapping.gyro)?) } else { None };
         let accel = if accel { Some(three(&mapping.accelerometer)?) } else { None };
         Ok(Self { rows, time, gyro, accel, gimbal, temperature })
+    }
+
+    /// Temperature of this row, in the unit of the file; not a number if there is none.
+    fn temperature(&self) -> f64 {
+        let found = self.temperature.and_then(|(index, _)| self.rows.number(index).ok());
+        found.unwrap_or(f64::NAN)
     }
 
     fn time_ns(&self) -> Result<Option<u64>, SourceError> {

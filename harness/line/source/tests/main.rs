@@ -9,6 +9,7 @@ mod common {
 #[cfg(unix)]
 #[cfg(feature = "can")]
 mod can_source;
+mod counting;
 mod reference_rows;
 mod replay;
 mod text;

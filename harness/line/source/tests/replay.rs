@@ -281,7 +281,8 @@ fn json_messages_become_samples() {
     assert_eq!(epochs[0].sample.delta_theta[0], expected);
     assert!(epochs[0].sample.delta_theta[1] < 0);
 
-    mapping.stamp = MappedStamp::LogTime;
+    // The messages were logged every 10 ms.
+    (mapping.stamp, mapping.nominal_rate_hz) = (MappedStamp::LogTime, 100.0);
     let epochs = all(&mut Replay::open(&path, Some(&mapping)).unwrap()).unwrap();
     assert_eq!(epochs[1].sample.device_time.ns, 1_010_000_000);
 

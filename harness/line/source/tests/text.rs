@@ -59,17 +59,23 @@ fn error(text: &str, change: impl FnOnce(&mut TextMapping)) -> String {
 
 #[test]
 fn rates_become_counts_over_the_real_intervals() {
-    let epochs =
-        read("# a comment\n0.010, 1e-3, 0, 0, 0, 0, 9.8\n\n0.024, 1e-3, 0, 0, 0, 0, 9.8\n", |_| {})
-            .unwrap();
-    assert_eq!(epochs.len(), 2);
-    // 1e-3 rad/s over 10 ms is 1e-5 rad: 687194.767 counts; over the next 14 ms 1.4 times that, and the
-    // sum is right to half a count.
-    let counts: Vec<i32> = epochs.iter().map(|epoch| epoch.sample.delta_theta[0]).collect();
-    assert_eq!(counts, [687_195, 962_072]);
-    assert_eq!(epochs[1].sample.delta_velocity[2], (9.8 * 0.014 / DELTA_VELOCITY_LSB_MPS) as i32);
-    assert_eq!(epochs[1].sample.device_time.ns, 24_000_000);
-    assert_eq!(epochs[1].sample.sequence, 2);
+    // 100 Hz is configured, and the stamps of 100 rows say 98.
+    let rows = |k: usize| format!("{:.6}, 1e-3, 0, 0, 0, 0, 9.8\n", 1.0 + k as f64 / 98.0);
+    let text: String = (0..100).map(rows).collect();
+    let epochs = read(&format!("# a comment\n\n{text}"), |_| {}).unwrap();
+    assert_eq!(epochs.len(), 100);
+    let last = &epochs[99].sample;
+    assert!(last.device_time.ns.abs_diff(2_010_204_082) < 2000, "{last:?}");
+    assert_eq!(last.sequence, 100);
+    // 1e-3 rad/s from row 1 to row 99, 98/98 s: the sum is that of the stamps, and the remainder of the counts is carried.
+    let counts: i64 =
+        epochs[1..99].iter().map(|epoch| i64::from(epoch.sample.delta_theta[0])).sum();
+    assert!((counts as f64 * DELTA_THETA_LSB_RAD - 1e-3).abs() < 3e-9, "{counts}");
+    // The first row has the configured period, of which the fit knows nothing yet.
+    assert_eq!(epochs[0].sample.delta_theta[0], 687_195);
+    let velocity: i64 =
+        epochs[1..99].iter().map(|epoch| i64::from(epoch.sample.delta_velocity[2])).sum();
+    assert!((velocity as f64 * DELTA_VELOCITY_LSB_MPS - 9.8).abs() < 3e-5, "{velocity}");
     assert_eq!(epochs[1].sample.status, Status::GIMBAL_INVALID, "the file has no gimbals");
 }
 
@@ -128,7 +134,7 @@ fn a_temperature_is_that_of_the_row_and_is_read_where_it_is_asked_for() {
     assert_eq!(all(&mut source).unwrap().len(), 2);
     let said = source.temperature_c().unwrap_err().to_string();
     assert!(
-        said.contains("a.csv: line 2: column 8: found \"\", expected a finite number"),
+        said.contains("a.csv: line 2: column 8: temperature NaN degC, expected a finite number"),
         "{said}"
     );
 }
@@ -159,8 +165,13 @@ fn errors_name_line_and_column() {
         (format!("{good}\n0.02,1,NaN,3,4,5,6\n"), "line 3: column 3: found \"NaN\""),
         (format!("{good}0.02,1,2\n"), "line 2: found 3 columns, expected 5 or more"),
         (
-            format!("{good}0.01,1,2,3,4,5,6\n"),
-            "line 2: stamp 10000000 ns is not after the one before",
+            (1..100)
+                .map(|k| {
+                    format!("{},1,2,3,4,5,6\n", k as f64 * 0.01 - if k > 50 { 0.4 } else { 0.0 })
+                })
+                .collect(),
+            "line 51: the clock goes back from 0.5 s to 0.11 s: it was set, or the unit was restarted; where no row is \
+             missing, time_column = \"none\" and the rate of the rows leave the stamps out",
         ),
         (format!("{good}-1,1,2,3,4,5,6\n"), "line 2: column 1: found \"-1\", expected a time"),
         (format!("{good}\u{fffd}"), "line 2: "),

@@ -10,7 +10,7 @@ use crate::run_folder::{free_name, in_the_way};
 use crate::run_request::{RunRequest, rerun};
 use crate::source_uri::from_here;
 use crate::terminal::{note, print, write};
-use octant_base::number::counted;
+use octant_account::Account;
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{
     Existing, FmuFacts, FmuFactsError, InputFacts, Manifest, RunFacts, RunFolder,
@@ -120,6 +120,14 @@ fn tell_choices(scenario: &Scenario) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Prints an account: a line where every unit was used as it was found, else a line for each repair and loss too.
+fn tell_account(account: &Account) {
+    note!("octant: {}", account.headline());
+    if !account.is_plain() || !account.doubts().is_empty() {
+        account.lines().iter().skip(1).for_each(|line| note!("octant:   {line}"));
+    }
 }
 
 /// Records of the operator of a run, and the reasons why they make it no evidence.
@@ -250,10 +258,7 @@ impl Asked {
         let reasons = what_broke(&primary, baseline.as_ref());
         let link = primary.bench.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
         let instrument = primary.bench.instrument.as_ref();
-        if let Some(bench) = instrument.filter(|bench| bench.readings.missing > 0) {
-            let missing = counted(bench.readings.missing, "sample is", "samples are");
-            note!("octant: {}; {missing} missing, and the core bridges the gaps", bench.instrument);
-        }
+        primary.bench.inputs.iter().for_each(tell_account);
         let bench = instrument.and_then(|bench| serde_json::to_value(bench).ok());
         let bench = with_power(bench, primary.bench.power.as_deref());
         let realtime = primary.bench.kept.as_ref().map(|kept| kept.granted.clone());

@@ -105,6 +105,7 @@ impl Bench {
             planned: None,
             done: None,
             faults: Vec::new(),
+            inputs: Vec::new(),
             altered_streams: None,
             method: "eight".to_owned(),
             calibration: Some(CalibrationScore {

@@ -7,6 +7,7 @@ use super::calibration::calibration;
 use super::counterfactual::counterfactual;
 use super::drift::drift;
 use super::gimbals::gimbals;
+use super::inputs::inputs;
 use super::marks::marks;
 use super::pacing::pacing;
 use super::page::{Section, badge, page, sections};
@@ -30,6 +31,7 @@ pub fn render(data: &ReportData) -> String {
             "Requirements",
             html! { (requirements(data)) (planned_and_done(summary)) },
         ),
+        Section::new("inputs", "Inputs", inputs(summary)),
         Section::new("faults", "Faults", faults(summary)),
         Section::new("effects", "What the faults did", counterfactual(data)),
         Section::new("navigation", "Navigation", drift(data)),

@@ -145,6 +145,7 @@ fn data() -> ReportData {
         planned: None,
         done: None,
         faults: vec![],
+        inputs: Vec::new(),
         altered_streams: None,
         method: "eight positions".to_owned(),
         calibration: Some(eight),

@@ -18,6 +18,7 @@ use super::finding::Finding;
 use super::reference::AnalyticReference;
 use super::verdict::RequirementResult;
 use super::work::Work;
+use octant_account::Account;
 use octant_base::not_finite;
 use octant_base::printable::printable;
 use octant_verdict::Verdict;
@@ -67,6 +68,9 @@ pub struct Summary {
     /// Work done, from the stream of the run.
     #[serde(default)]
     pub done: Option<Work>,
+    /// Accounts of what came in from outside: units read, used, repaired, left out, missing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<Account>,
     /// Faults injected.
     pub faults: Vec<FaultResult>,
     /// Checksums of clean and faulted stream; null if they are the same.

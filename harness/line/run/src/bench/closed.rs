@@ -62,7 +62,7 @@ impl<S: Source, E: Endpoint> Bench<S, E, Records<'_>> {
             None => driven,
             Some(error) => driven.and(Err(error.into())),
         };
-        let cut_short = source.cut_short();
+        let (cut_short, inputs) = (source.cut_short(), source.accounts());
         if let Some(detail) = &instrument {
             recorder.event(Event::Bench(detail.clone()));
         }
@@ -118,7 +118,7 @@ impl<S: Source, E: Endpoint> Bench<S, E, Records<'_>> {
             }
             _ => (ended, broken),
         };
-        let bench = BenchEnd { broken, cut_short, kept, link, instrument, power };
+        let bench = BenchEnd { broken, cut_short, inputs, kept, link, instrument, power };
         let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
         Ok(Closed {
             ended,

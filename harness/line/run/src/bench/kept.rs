@@ -1,6 +1,7 @@
 //! Reports of the bench's parts: time keeping, link, instrument and power.
 
 use super::ended::RunError;
+use octant_account::Account;
 use octant_realtime::schedule::Granted;
 use octant_recorder::event::{BenchRecord, LinkRecord, PowerRecord};
 use octant_score::summary::PacingRecord;
@@ -21,6 +22,8 @@ pub struct BenchEnd {
     pub broken: Option<RunError>,
     /// Description of the point where the source ended in the middle of something.
     pub cut_short: Option<String>,
+    /// Accounts of what the source read from outside.
+    pub inputs: Vec<Account>,
     /// Time keeping of a run by the clock.
     pub kept: Option<TimeKeeping>,
     /// Device and traffic of a run over a wire; as in the recording.

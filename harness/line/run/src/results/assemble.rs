@@ -166,6 +166,7 @@ pub fn assemble_with(
         decision: Some(scenario.decision.decided(&against)),
         planned: Some(planned),
         done: Some(done),
+        inputs: std::mem::take(&mut primary.bench.inputs),
         faults: results(&primary.receipts),
         altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreamSummary::from),
         method: primary.label.clone(),

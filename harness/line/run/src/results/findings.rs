@@ -3,6 +3,7 @@
 
 use super::method::{MethodRun, planned_of};
 use crate::bench::ended::Ended;
+use octant_account::Account;
 use octant_base::number;
 use octant_calibration::config::{Estimator, SwayNoise};
 use octant_faults::Receipt;
@@ -57,6 +58,8 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
     }
     // The unit isn't responsible for the missing rest of a file.
     reasons.extend(run.bench.cut_short.iter().map(|cut_short| format!("{cut_short}{place}")));
+    let doubts = run.bench.inputs.iter().flat_map(Account::doubts);
+    reasons.extend(doubts.map(|doubt| format!("{doubt}{place}")));
     let pacing = run.bench.kept.as_ref().map(|kept| &kept.pacing);
     reasons.extend(pacing.map(|pacing| too_late(limits, pacing)).unwrap_or_default());
     let inconclusive = |reason| Finding::of_bench(Verdict::Inconclusive, reason);

@@ -4,7 +4,7 @@
 //! A command that the core computes from sample k is set two steps later: it acts from the end of
 //! interval k + 1 on, as with two FMUs stepped in parallel.
 
-use crate::counting::Triads;
+use crate::triads::Triads;
 use crate::{Epoch, Source, SourceError};
 use octant_fmu_bind::bind::{BindError, Binder, Bound, Cells, ChannelCell, Handle};
 use octant_fmu_bind::find::ValueWay;

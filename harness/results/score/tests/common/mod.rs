@@ -66,6 +66,7 @@ pub(crate) fn summary() -> Summary {
         }),
         baseline: None,
         reference: None,
+        inputs: Vec::new(),
         altered_streams: None,
         alignment: None,
         counterfactual: None,
