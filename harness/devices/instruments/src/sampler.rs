@@ -1,20 +1,21 @@
 //! Conversion of readings to samples.
 
-use crate::{Axes, Reading};
+use crate::timeline::{Ahead, Misplaced, Placed, Timeline};
+use crate::{Axes, Reading, ReadingKind};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
 
 /// Settings of a unit beside its protocol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplerSettings {
     /// Mounting of the unit.
     pub axes: Axes,
-    /// Configured sample period, ns.
-    pub period_ns: u64,
+    /// Configured rate of the samples, Hz.
+    pub rate_hz: f64,
 }
 
 /// Reason why a reading makes no sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unusable {
     /// The reading has no rotation.
     #[error("the reading has no rotation: configure the unit to send it")]
@@ -22,9 +23,40 @@ pub enum Unusable {
     /// The reading has no specific force.
     #[error("the reading has no velocity or specific force: configure the unit to send it")]
     NoVelocity,
-    /// The reading is repeated or too late, or the unit was restarted.
+    /// The reading is repeated or too late.
     #[error("the reading isn't later than the one before it")]
     Behind,
+    /// The unit was restarted, or its clock was set back: its readings go on from there.
+    #[error(
+        "the unit was restarted, or its clock set: readings go on at {to_s} s after {from_s} s, expected one clock and one \
+         counter without a restart"
+    )]
+    Restarted {
+        /// Stamp, or counted time, before, s.
+        from_s: f64,
+        /// That of the reading, s.
+        to_s: f64,
+    },
+    /// The clock jumps ahead by more than a day.
+    #[error(
+        "the unit's clock jumps ahead by more than a day, from {from_s} s to {to_s} s: it was set"
+    )]
+    Jumped {
+        /// Stamp before, s.
+        from_s: f64,
+        /// Stamp of the reading, s.
+        to_s: f64,
+    },
+    /// The rate is another one than before, or than configured.
+    #[error("readings come at {found_hz} Hz by their stamps, expected {expected_hz} Hz{changed}")]
+    Rate {
+        /// Rate by the stamps, Hz.
+        found_hz: f64,
+        /// Expected rate, Hz.
+        expected_hz: f64,
+        /// Words that say since when.
+        changed: &'static str,
+    },
 }
 
 /// Counts of the readings.
@@ -52,19 +84,26 @@ pub struct Sampler {
     settings: SamplerSettings,
     rotation: [Accumulator; 3],
     velocity: [Accumulator; 3],
-    /// Last reading, and the sequence number of its sample.
-    last: Option<Last>,
-    /// Stamp of the first reading.
-    first_stamp_ns: Option<u64>,
+    timeline: Timeline,
+    /// Time of the first reading, ns.
+    first_ns: Option<u64>,
+    /// True once a reading was an increment, and once one had a counter.
+    increments: bool,
+    counted: bool,
+    /// Readings behind the last sample, one after the other, of a clock that goes on.
+    behind: Option<Behind>,
     counters: SamplerCounters,
 }
 
+/// Readings that come behind the last sample.
 #[derive(Clone, Copy, Debug)]
-struct Last {
-    number: u64,
-    sequence: Option<u64>,
-    stamp_ns: Option<u64>,
+struct Behind {
+    place: u64,
+    count: u32,
 }
+
+/// Number of readings behind the last sample that make a restart: single ones come late.
+const RESTART: u32 = 3;
 
 impl Sampler {
     /// Makes a sampler without readings.
@@ -74,10 +113,37 @@ impl Sampler {
             settings,
             rotation: Default::default(),
             velocity: Default::default(),
-            last: None,
-            first_stamp_ns: None,
+            timeline: Timeline::new(settings.rate_hz),
+            first_ns: None,
+            increments: false,
+            counted: false,
+            behind: None,
             counters: SamplerCounters::default(),
         }
+    }
+
+    /// Timeline of the readings.
+    #[must_use]
+    pub fn timeline(&self) -> &Timeline {
+        &self.timeline
+    }
+
+    /// Configured rate, Hz.
+    #[must_use]
+    pub fn rate_hz(&self) -> f64 {
+        self.settings.rate_hz
+    }
+
+    /// Returns whether readings were increments: an error of the unit's clock is one of their rates.
+    #[must_use]
+    pub fn has_increments(&self) -> bool {
+        self.increments
+    }
+
+    /// Returns whether readings had counters.
+    #[must_use]
+    pub fn has_counters(&self) -> bool {
+        self.counted
     }
 
     /// Counts of the readings.
@@ -105,17 +171,21 @@ impl Sampler {
             let no_rotation = reading.rotation.is_none();
             return Err(if no_rotation { Unusable::NoRotation } else { Unusable::NoVelocity });
         };
-        let period_ns = self.settings.period_ns.max(1);
         let stamp_ns = reading.stamp.map(|stamp| stamp.ns);
-        let Some(sequence) = self.number(reading.sequence, stamp_ns, period_ns) else {
-            self.counters.behind += 1;
-            return Err(Unusable::Behind);
+        let placed = match self.timeline.place(stamp_ns, reading.sequence, || Ahead::NONE) {
+            Ok(placed) => placed,
+            Err(misplaced) => return Err(self.misplaced(misplaced, reading.sequence.or(stamp_ns))),
         };
-        let period_s = period_ns as f64 * 1e-9;
-        let interval_s = reading.interval_s.unwrap_or(period_s);
+        self.behind = None;
+        let Placed { number, missing, time_ns, interval_ns } = placed;
+        let sequence = number.saturating_add(1);
+        let period_s = 1.0 / self.settings.rate_hz;
+        let interval_s = reading.interval_s.unwrap_or(interval_ns as f64 * 1e-9);
         if !((interval_s - period_s).abs() <= 0.05 * period_s) {
             self.counters.irregular += 1;
         }
+        self.increments |= rotation.kind == ReadingKind::Increment;
+        self.counted |= reading.sequence.is_some();
         let mut status = reading.status;
         let rotation = self.settings.axes.to_body(rotation.over(interval_s));
         let velocity = self.settings.axes.to_body(velocity.over(interval_s));
@@ -140,19 +210,11 @@ impl Sampler {
         if gimbal.is_none() {
             status |= Status::GIMBAL_INVALID;
         }
-        if let Some(last) = self.last {
-            self.counters.missing += sequence - last.number - 1;
-        }
-        self.last = Some(Last { number: sequence, sequence: reading.sequence, stamp_ns });
+        self.counters.missing += missing;
         self.counters.samples += 1;
-        let ns = match (stamp_ns, self.first_stamp_ns) {
-            (Some(stamp), Some(first)) => stamp.saturating_sub(first).saturating_add(period_ns),
-            (Some(stamp), None) if sequence == 1 => {
-                self.first_stamp_ns = Some(stamp);
-                period_ns
-            }
-            _ => sequence.saturating_mul(period_ns),
-        };
+        // Time begins with the interval of the first reading.
+        let first_ns = *self.first_ns.get_or_insert(time_ns.wrapping_sub(interval_ns));
+        let ns = time_ns.wrapping_sub(first_ns);
         Ok(Sample {
             sequence,
             device_time: DeviceTime { ns },
@@ -163,22 +225,32 @@ impl Sampler {
         })
     }
 
-    /// Number of the sample of a reading; `None` if it isn't after the last one.
-    fn number(&self, sequence: Option<u64>, stamp_ns: Option<u64>, period_ns: u64) -> Option<u64> {
-        let Some(last) = self.last else { return Some(1) };
-        let steps = match (sequence, last.sequence, stamp_ns, last.stamp_ns) {
-            (Some(now), Some(before), ..) => now.checked_sub(before)?,
-            (.., Some(now), Some(before)) => {
-                let passed = now.checked_sub(before)?;
-                if passed == 0 {
-                    return None;
-                }
-                // Rounds to the nearest number of periods; a reading that came early still counts as
-                // one step.
-                ((passed + period_ns / 2) / period_ns).max(1)
+    /// Counts a reading that has no place in the timeline. `place` is its counter, else its stamp.
+    #[cold]
+    fn misplaced(&mut self, misplaced: Misplaced, place: Option<u64>) -> Unusable {
+        match misplaced {
+            Misplaced::Repeated => {
+                self.counters.behind += 1;
+                Unusable::Behind
             }
-            _ => 1,
-        };
-        (steps > 0).then(|| last.number.saturating_add(steps))
+            Misplaced::Back { from_s, to_s } => {
+                self.counters.behind += 1;
+                let place = place.unwrap_or_default();
+                let goes_on = self.behind.filter(|behind| place > behind.place);
+                let count = goes_on.map_or(1, |behind| behind.count + 1);
+                self.behind = Some(Behind { place, count });
+                if count < RESTART {
+                    Unusable::Behind
+                } else {
+                    Unusable::Restarted { from_s, to_s }
+                }
+            }
+            Misplaced::Ahead { from_s, to_s } => Unusable::Jumped { from_s, to_s },
+            Misplaced::Rate { found_hz, expected_hz, changed } => Unusable::Rate {
+                found_hz,
+                expected_hz,
+                changed: if changed { ", as before" } else { "" },
+            },
+        }
     }
 }

@@ -38,7 +38,7 @@ fn nothing_is_allocated() {
     let mut samples = 0;
     for protocol in Protocol::ALL {
         let (mut encoder, mut decoder) = (AnyEncoder::new(protocol), AnyDecoder::new(protocol));
-        let mut sampler = Sampler::new(SamplerSettings { axes: Axes::SAME, period_ns: 5_000_000 });
+        let mut sampler = Sampler::new(SamplerSettings { axes: Axes::SAME, rate_hz: 200.0 });
         for number in 1..=200 {
             let frame = encoder.encode(&common::reading(number)).unwrap();
             // Each tenth frame is cut in two, each seventh has garbage before it.

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 const PERIOD_NS: u64 = 5_000_000;
 
 fn sampler(axes: &str) -> Sampler {
-    Sampler::new(SamplerSettings { axes: Axes::parse(axes).unwrap(), period_ns: PERIOD_NS })
+    Sampler::new(SamplerSettings { axes: Axes::parse(axes).unwrap(), rate_hz: 200.0 })
 }
 
 /// The rate is constant and far below a count: the sum of the counts equals the closed form within half

@@ -363,6 +363,7 @@ impl Counting {
             rate_sigma_ppm: rate.map(|rate| rate.sigma_ppm),
             scatter_s: rate.map(|rate| rate.scatter_s),
             scatter_max_s: rate.map(|rate| rate.scatter_max_s),
+            increments: self.quantity == RecordedQuantity::Increments,
             outside,
         }
     }

@@ -104,8 +104,8 @@ fn open_itself(
             Ok(Some(TextSource::open(&mapping)?.into()))
         }
         scenario::SourceSpec::Log(log) => {
-            let (file, period_ns) = (path(&log.file)?, scenario.sample_period_ns);
-            Ok(Some(LogSource::open(&file, log, &scenario.folder, period_ns)?.into()))
+            let (file, rate_hz) = (path(&log.file)?, scenario.sample_rate_hz);
+            Ok(Some(LogSource::open(&file, log, &scenario.folder, rate_hz)?.into()))
         }
         scenario::SourceSpec::Solution(spec) => {
             Ok(Some(SolutionSource::open(scenario, spec)?.into()))

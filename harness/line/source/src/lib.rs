@@ -20,6 +20,7 @@ mod reference_mcap;
 mod reference_text;
 mod replay;
 mod rows;
+mod sampled;
 mod solution;
 mod temperature;
 mod text;

@@ -6,9 +6,11 @@
 use crate::counting::MISSING_MAX;
 use crate::described::decoder;
 use crate::rate_check::RateCheck;
+use crate::sampled::account;
 use crate::temperature::TemperatureCheck;
 use crate::traffic::traffic;
 use crate::{Epoch, Source, SourceError};
+use octant_account::Account;
 use octant_base::number::counted;
 use octant_instruments::{
     AnyDecoder, FramingEvent, Reading, ReadingDefect, Sampler, SamplerCounters, SamplerSettings,
@@ -50,7 +52,7 @@ pub struct LogSource {
 }
 
 impl LogSource {
-    /// Opens a file. Its samples have a period, ns. The name of a description's file is relative to `folder`.
+    /// Opens a file. Its samples have a rate, Hz. The name of a description's file is relative to `folder`.
     ///
     /// # Errors
     /// If the file can't be opened, or the description of its frames isn't one.
@@ -58,7 +60,7 @@ impl LogSource {
         path: &Path,
         log: &InstrumentLog,
         folder: &Path,
-        period_ns: u64,
+        rate_hz: f64,
     ) -> Result<Self, SourceError> {
         let decoder = decoder(&log.speaks, log.count, folder)?;
         let decoder = decoder.ok_or_else(|| SourceError::Read {
@@ -83,8 +85,8 @@ impl LogSource {
             buffer: vec![0; READ_BYTES].into_boxed_slice(),
             rest: 0..0,
             lost_before_end: None,
-            sampler: Sampler::new(SamplerSettings { axes: log.axes, period_ns }),
-            rate: RateCheck::new(period_ns),
+            sampler: Sampler::new(SamplerSettings { axes: log.axes, rate_hz }),
+            rate: RateCheck::new(rate_hz),
             temperatures: TemperatureCheck::default(),
             last: (0, None),
         })
@@ -180,6 +182,10 @@ impl Source for LogSource {
         })
     }
 
+    fn accounts(&self) -> Vec<Account> {
+        vec![account(&self.path, &self.sampler, Some(self.decoder.counters()), None)]
+    }
+
     fn conclude(
         &mut self,
         _broken: Option<&str>,
@@ -230,7 +236,7 @@ mod tests {
         let file = FileName("unit.bin".to_owned());
         let speaks = Speaks::Bytes(protocol);
         let log = InstrumentLog { file, speaks, count: None, axes: Axes::SAME };
-        let source = LogSource::open(&path, &log, folder.path(), PERIOD_NS).unwrap();
+        let source = LogSource::open(&path, &log, folder.path(), 200.0).unwrap();
         (folder, source)
     }
 
@@ -299,7 +305,7 @@ mod tests {
     fn another_rate_than_the_scenarios_is_an_error() {
         let (_folder, mut source) =
             source(&bytes(Protocol::VectorNav, 1..=200), Protocol::VectorNav);
-        source.rate = RateCheck::new(2 * PERIOD_NS);
+        source.rate = RateCheck::new(100.0);
         let mut epoch = Epoch::default();
         let mut next = || source.next(&GimbalCommand::default(), &mut epoch);
         let error =

@@ -20,9 +20,9 @@ pub(super) struct RateCheck {
 }
 
 impl RateCheck {
-    pub(super) fn new(period_ns: u64) -> Self {
+    pub(super) fn new(rate_hz: f64) -> Self {
         Self {
-            period_s: period_ns as f64 * 1e-9,
+            period_s: 1.0 / rate_hz,
             last_ns: None,
             intervals_s: Vec::with_capacity(INTERVALS),
             is_done: false,
@@ -79,7 +79,7 @@ mod tests {
 
     /// Judgement of readings with these stamps, ns, at 400 Hz.
     fn judged(stamps: impl Iterator<Item = u64>) -> Result<(), String> {
-        let mut check = RateCheck::new(2_500_000);
+        let mut check = RateCheck::new(400.0);
         for ns in stamps {
             let stamp = Some(Stamp { ns, clock: StampClock::Startup });
             check.reading(&Reading { stamp, ..Reading::NOTHING })?;

@@ -111,9 +111,6 @@ fn a_duration_without_room_for_the_dwells_is_told_with_the_figures() {
 
 #[test]
 fn periods_that_do_not_fit_the_sample_period_are_refused() {
-    let (_, path, message) = problem(&format!("{HEAD}[imu]\nrate = \"300 Hz\"\n"));
-    assert_eq!(path, "imu.rate");
-    assert_says(&message, &["whole number of ns"]);
     let (_, path, message) =
         problem(&format!("{HEAD}[procedure.calibration.aiding]\nperiod = \"7 ms\"\n"));
     assert_eq!(path, "procedure.calibration.aiding.period");

@@ -124,7 +124,8 @@ fn stays(receipt: &Receipt, scenario: &Scenario) -> bool {
             || ["temperature-ramp", "lever-arm"].contains(&kind.name)
     });
     let end = scenario.calibration_samples();
-    let last_second = 1_000_000_000 / scenario.sample_period_ns.max(1);
+    let last_second =
+        (1_000_000_000 + scenario.sample_period_ns / 2) / scenario.sample_period_ns.max(1);
     let is_late = |last: u64| last.saturating_add(last_second) >= end;
     // A change that shows in motion alone, as that of a lever arm, alters no sample at rest: its duration tells how long
     // it lasts.

@@ -19,6 +19,8 @@ pub struct ClockAccount {
     pub scatter_s: Option<f64>,
     /// Largest distance of a stamp from the fit, s.
     pub scatter_max_s: Option<f64>,
+    /// True where the units are increments: an error of the clock is one of the rates that are made of them.
+    pub increments: bool,
     /// Clock outside, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outside: Option<OutsideClock>,
@@ -63,10 +65,14 @@ impl fmt::Display for ClockAccount {
                 if let Some(sigma) = sigma_ppm {
                     write!(f, " ± {}", plain(*sigma, 2))?;
                 }
-                write!(f, " ppm against {name}")
+                write!(f, " ppm against {name}")?;
             }
-            None => write!(f, "; no clock outside shows the error of this one"),
+            None => write!(f, "; no clock outside shows the error of this one")?,
         }
+        if self.increments {
+            write!(f, "; of increments 1 ppm of it is 1 ug of accelerometer bias along gravity")?;
+        }
+        Ok(())
     }
 }
 

@@ -49,6 +49,7 @@ fn a_clock_is_told_with_its_uncertainty() {
         rate_sigma_ppm: Some(0.25),
         scatter_s: Some(3e-4),
         scatter_max_s: Some(1e-3),
+        increments: false,
         outside: Some(OutsideClock {
             name: "pulses".into(),
             fast_ppm: -12.5,
@@ -60,10 +61,17 @@ fn a_clock_is_told_with_its_uncertainty() {
         "200.02 Hz, +100 ± 0.25 ppm from the configured 200 Hz; stamps scatter by 0.3 ms (1 sigma), 1 ms at most; \
          −12.5 ± 0.5 ppm against pulses"
     );
-    clock = ClockAccount { measured_hz: None, scatter_s: None, outside: None, ..clock };
+    clock = ClockAccount {
+        measured_hz: None,
+        scatter_s: None,
+        outside: None,
+        increments: true,
+        ..clock
+    };
     assert_eq!(
         clock.to_string(),
-        "no stamps; 200 Hz is taken from the scenario; no clock outside shows the error of this one"
+        "no stamps; 200 Hz is taken from the scenario; no clock outside shows the error of this one; of \
+         increments 1 ppm of it is 1 ug of accelerometer bias along gravity"
     );
 }
 

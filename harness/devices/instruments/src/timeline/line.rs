@@ -1,6 +1,9 @@
 //! Line of the stamps over the count of readings, with a fading memory.
 
-use super::{AHEAD, MEMORY};
+/// Number of readings that the fit remembers.
+pub const MEMORY: f64 = 2000.0;
+/// Number of readings that are looked at behind a stamp that is off, where they are there.
+pub const AHEAD: usize = 16;
 
 /// Information of the nominal period: as much as ten stamps have.
 const NOMINAL_VARIANCE: f64 = 12.0 / 1000.0;

@@ -19,13 +19,12 @@
 mod line;
 mod regression;
 
+pub use line::{AHEAD, MEMORY};
+pub use regression::StampRate;
+
 use line::Line;
 use regression::Regression;
 
-/// Number of readings that the fit remembers.
-pub const MEMORY: f64 = 2000.0;
-/// Number of readings that are looked at behind a stamp that is off, where they are there.
-pub const AHEAD: usize = 16;
 /// Distance from the fit, as a share of the period, from which a stamp counts as off.
 pub const SHIFTED: f64 = 0.05;
 /// Largest jump ahead of a clock, ns: a day. A longer one is no gap.
@@ -34,6 +33,8 @@ const JUMP_MAX_NS: f64 = 86_400e9;
 const RATE_TOLERANCE: f64 = 0.05;
 /// Number of readings after which the rate is judged.
 const RATE_JUDGED: u64 = 64;
+/// Number of gaps of one length, reading after reading, that are another rate.
+const STRAYS: u32 = 8;
 /// Number of readings before which stamps say nothing: the fit is still on its way.
 const FEW: u64 = 10;
 /// Scatter of stamps, as a share of the period, from which a single missing reading can't be seen by them.
@@ -109,21 +110,6 @@ pub struct Tally {
     pub placed: u64,
 }
 
-/// Rate and scatter of the stamps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StampRate {
-    /// Rate by the stamps, Hz.
-    pub hz: f64,
-    /// Difference from the configured rate, ppm.
-    pub ppm: f64,
-    /// Standard deviation of that, ppm: of white scatter.
-    pub sigma_ppm: f64,
-    /// Standard deviation of the stamps about the fit, s.
-    pub scatter_s: f64,
-    /// Largest distance of a stamp from the fit, s.
-    pub scatter_max_s: f64,
-}
-
 /// Makes times of readings.
 #[derive(Clone, Copy, Debug)]
 pub struct Timeline {
@@ -143,6 +129,8 @@ struct State {
     counter: Option<u64>,
     number: u64,
     time_ns: u64,
+    /// Gaps of one length, reading after reading.
+    strays: (u64, u32),
 }
 
 impl Timeline {
@@ -303,6 +291,7 @@ impl Timeline {
             counter,
             number: 0,
             time_ns,
+            strays: (0, 0),
         });
         self.tally.placed += 1;
         Placed { number: 0, missing: 0, time_ns, interval_ns }
@@ -346,8 +335,17 @@ impl Timeline {
         state.stamp = Some(now);
         state.counter = counter.or(state.counter);
         self.tally.placed += 1;
-        if steps > 1 {
+        if steps > 1 || state.strays.1 > 0 {
             note_gap(&mut self.tally, read, &placed, period_ns, before_ns);
+            let alike = if state.strays.0 == steps { state.strays.1 + 1 } else { 1 };
+            state.strays = if steps > 1 { (steps, alike) } else { (0, 0) };
+            if counter.is_none() && alike >= STRAYS {
+                return Err(Misplaced::Rate {
+                    found_hz: 1e9 / (steps as f64 * period_ns),
+                    expected_hz: 1e9 / period_ns,
+                    changed: true,
+                });
+            }
         }
         if self.tally.placed == RATE_JUDGED {
             self.judge_rate()?;

@@ -1,6 +1,19 @@
 //! Straight line through all stamps, for the rate over the whole and its uncertainty.
 
-use super::StampRate;
+/// Rate and scatter of the stamps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StampRate {
+    /// Rate by the stamps, Hz.
+    pub hz: f64,
+    /// Difference from the configured rate, ppm.
+    pub ppm: f64,
+    /// Standard deviation of that, ppm: of white scatter.
+    pub sigma_ppm: f64,
+    /// Standard deviation of the stamps about the fit, s.
+    pub scatter_s: f64,
+    /// Largest distance of a stamp from the fit, s.
+    pub scatter_max_s: f64,
+}
 
 /// Sums of a regression of stamps on the count of readings, about their means (Welford's updates).
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,6 +2,7 @@
 
 use super::arrival::{Arrival, ArrivalClock};
 use crate::SourceError;
+use octant_account::{Account, AccountEntry, Weight};
 use octant_base::encoding::utf8_or_windows_1252;
 use octant_base::number::counted;
 use octant_instruments::Reading;
@@ -11,6 +12,9 @@ use octant_link::port::{HeardFrame, Listener};
 use octant_scenario::{FileName, Messages};
 use std::path::Path;
 use std::time::Duration;
+
+/// More lost readings than one for so many that came make a run inconclusive.
+const LOST_MAX: u64 = 100;
 
 /// Messages on a bus, and what is gathered of a reading.
 #[derive(Debug)]
@@ -44,6 +48,25 @@ impl Bus {
         let heard = self.listener.hear(wait).map_err(|error| error.to_string())?;
         self.frame = heard.map(|(heard, stamp)| (heard, self.clock.arrival(stamp)));
         Ok(self.frame.is_some())
+    }
+
+    /// Adds what was lost on the bus to an account.
+    pub(super) fn losses(&self, account: Account) -> Account {
+        let counters = self.gatherer.counters();
+        let lost = counters.incomplete + counters.mixed;
+        let many = Weight::doubt_if(lost > counters.readings / LOST_MAX);
+        let entry = AccountEntry::new;
+        account
+            .left_out(entry(counters.incomplete, "readings with a missing message").weight(many))
+            .left_out(
+                entry(counters.mixed, "readings with messages of different samples").weight(many),
+            )
+            .note(entry(
+                counters.orphaned,
+                "messages of readings that had not begun or were given up",
+            ))
+            .note(entry(counters.short, "frames shorter than their message"))
+            .note(entry(counters.other, "frames of other messages"))
     }
 
     pub(super) fn said(&self) -> String {

@@ -4,6 +4,7 @@ use super::arrival::Arrival;
 use super::dates::Dates;
 use super::known_stamps::KnownClock;
 use super::pulses::Pulses;
+use octant_account::OutsideClock;
 use octant_instruments::Stamp;
 use octant_instruments::align::ClockAlignment;
 use octant_recorder::event::{BenchClock, BenchTime};
@@ -13,6 +14,9 @@ use std::time::{Duration, Instant, SystemTime};
 /// have a time too.
 const BASE_NS: u64 = 3_600_000_000_000;
 
+/// Standard deviation of the rate of a host's clock, ppm: of a crystal without temperature compensation.
+const HOST_PPM: f64 = 20.0;
+
 /// Estimates when, on the host's clock, a reading was made.
 #[derive(Debug)]
 pub(super) struct Clock {
@@ -21,6 +25,15 @@ pub(super) struct Clock {
     alignment: ClockAlignment,
     reference: Reference,
     dates: Dates,
+    span: Span,
+}
+
+/// First and last arrivals and stamps, and the number of readings.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    arrivals: Option<(Instant, Instant)>,
+    stamps: Option<(u64, u64)>,
+    readings: u64,
 }
 
 /// Relation between stamps and the host's clock.
@@ -42,6 +55,7 @@ impl Clock {
             alignment: ClockAlignment::new(),
             reference,
             dates: Dates::default(),
+            span: Span::default(),
         }
     }
 
@@ -54,6 +68,13 @@ impl Clock {
         came: Arrival,
     ) -> Result<Option<Instant>, String> {
         self.dates.came(came);
+        self.span.readings += 1;
+        let (first, _) = self.span.arrivals.unwrap_or((came.at, came.at));
+        self.span.arrivals = Some((first, came.at));
+        if let Some(stamp) = stamp {
+            let (first, _) = self.span.stamps.unwrap_or((stamp.ns, stamp.ns));
+            self.span.stamps = Some((first, stamp.ns));
+        }
         let Some(stamp) = stamp else {
             let needed = match &self.reference {
                 Reference::Arrivals => return Ok(Some(came.at)),
@@ -112,6 +133,39 @@ impl Clock {
             Reference::Scale(known) => (None, Some(known.origin())),
         };
         self.dates.told(pulses, stamps, rate_degps, looks_ms)
+    }
+
+    /// Time that passed by the readings' stamps, or by their number where they have none, and time that passed between
+    /// their arrivals, s.
+    pub(super) fn pace(&self, period_s: f64) -> Option<(f64, f64)> {
+        let (first, last) = self.span.arrivals?;
+        let own_s = match self.span.stamps {
+            Some((first, last)) => last.saturating_sub(first) as f64 * 1e-9,
+            None => self.span.readings.saturating_sub(1) as f64 * period_s,
+        };
+        Some((own_s, last.saturating_duration_since(first).as_secs_f64()))
+    }
+
+    /// Clock of the unit's stamps against the pulses, else against the host's by arrivals.
+    pub(super) fn outside(&self) -> Option<OutsideClock> {
+        if let Reference::Pulses(pulses) = &self.reference
+            && let Some(skew_ppm) = pulses.told().skew_ppm
+        {
+            let sigma_ppm = None;
+            return Some(OutsideClock {
+                name: "its pulses".to_owned(),
+                fast_ppm: -skew_ppm,
+                sigma_ppm,
+            });
+        }
+        let estimate = self.alignment.estimate()?;
+        // A corner of the hull may be as late as the others are; the host's own clock is a crystal.
+        let arrivals_ppm = 1e-3 * estimate.late_mean_ns / estimate.span_s;
+        Some(OutsideClock {
+            name: "the host's clock, by arrivals".to_owned(),
+            fast_ppm: -1e6 * estimate.skew?,
+            sigma_ppm: Some(arrivals_ppm.hypot(HOST_PPM)),
+        })
     }
 
     /// Describes the clock relation in words and figures; `None` without stamps.

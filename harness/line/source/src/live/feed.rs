@@ -5,7 +5,8 @@ use super::bus::Bus;
 use crate::SourceError;
 use crate::described::decoder;
 use crate::traffic::traffic;
-use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingDefect};
+use octant_account::Account;
+use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingCounters, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
 use octant_wire::EndRole;
@@ -106,6 +107,22 @@ impl Feed {
     pub(super) fn hold_peer(&mut self) {
         if let Self::Line(line) = self {
             line.port.hold_peer(true);
+        }
+    }
+
+    /// Counts of the frames of a line; `None` of a bus.
+    pub(super) fn counters(&self) -> Option<&ReadingCounters> {
+        match self {
+            Self::Line(line) => Some(line.decoder.counters()),
+            Self::Bus(_) => None,
+        }
+    }
+
+    /// Adds the losses on a bus to an account.
+    pub(super) fn losses(&self, account: Account) -> Account {
+        match self {
+            Self::Line(_) => account,
+            Self::Bus(bus) => bus.losses(account),
         }
     }
 

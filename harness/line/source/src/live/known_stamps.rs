@@ -358,8 +358,7 @@ mod tests {
             pulses: None,
             known_stamps,
         };
-        let mut source =
-            LiveSource::open(&instrument, folder.path(), 100_000_000, Some(5)).unwrap();
+        let mut source = LiveSource::open(&instrument, folder.path(), 10.0, Some(5)).unwrap();
         source.turning_radps = Some(10f64.to_radians());
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.connect(source.reached_at().strip_prefix("udp:").unwrap()).unwrap();

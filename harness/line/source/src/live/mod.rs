@@ -26,6 +26,9 @@ use self::table::Table;
 use super::{Epoch, Source, SourceError};
 use crate::described::decoder;
 use crate::rate_check::RateCheck;
+use crate::sampled::account;
+use octant_account::{Account, AccountEntry, Weight};
+use octant_base::number::plain;
 use octant_instruments::{Sampler, SamplerSettings, Unusable};
 use octant_plant::Truth;
 use octant_recorder::event::{BenchReadings, BenchRecord};
@@ -36,6 +39,10 @@ use std::time::{Duration, Instant};
 
 /// Longest wait in one poll of the port.
 const WAIT: Duration = Duration::from_millis(50);
+
+/// Shortest time of arrivals that shows another pace, s, and the difference that does, as a share.
+const PACED_S: f64 = 5.0;
+const PACE_TOLERANCE: f64 = 0.05;
 
 /// An instrument on a port.
 #[derive(Debug)]
@@ -58,8 +65,8 @@ impl LiveSource {
     /// # Errors
     /// If a port can't be opened, or the table doesn't obey its commands.
     pub fn of(scenario: &Scenario, instrument: &Instrument) -> Result<Self, SourceError> {
-        let (period_ns, samples) = (scenario.sample_period_ns, scenario.samples());
-        let mut source = Self::open(instrument, &scenario.folder, period_ns, samples)?;
+        let (rate_hz, samples) = (scenario.sample_rate_hz, scenario.samples());
+        let mut source = Self::open(instrument, &scenario.folder, rate_hz, samples)?;
         source.turning_radps = Some(scenario.turntable.rate_radps);
         if let Some(drive) = &scenario.drive {
             source.table = Some(Table::start(drive, &scenario.folder)?);
@@ -93,11 +100,11 @@ impl LiveSource {
     pub fn open(
         instrument: &Instrument,
         folder: &Path,
-        sample_period_ns: u64,
+        rate_hz: f64,
         samples: Option<u64>,
     ) -> Result<Self, SourceError> {
         let feed = Feed::open(instrument, folder)?;
-        let settings = SamplerSettings { axes: instrument.axes, period_ns: sample_period_ns };
+        let settings = SamplerSettings { axes: instrument.axes, rate_hz };
         let gone = |reason| SourceError::Gone { uri: instrument.uri.to_string(), reason };
         let reference = match (&instrument.pulses, &instrument.known_stamps) {
             (Some(pulses), _) => {
@@ -110,7 +117,7 @@ impl LiveSource {
             feed,
             instrument: instrument.clone(),
             sampler: Sampler::new(settings),
-            rate: RateCheck::new(sample_period_ns),
+            rate: RateCheck::new(rate_hz),
             clock: Clock::new(reference),
             table: None,
             turning_radps: None,
@@ -141,6 +148,22 @@ impl LiveSource {
 
     fn gone(&self, reason: String) -> SourceError {
         SourceError::Gone { uri: self.instrument.uri.to_string(), reason }
+    }
+
+    /// Entry of readings that came at another rate than they say, by the host's clock.
+    fn pace(&self) -> AccountEntry {
+        let Some((stamped, arrived_s)) = self.clock.pace(1.0 / self.sampler.rate_hz()) else {
+            return AccountEntry::new(0, "");
+        };
+        let times = stamped / arrived_s;
+        let is_off = arrived_s >= PACED_S && (times - 1.0).abs() > PACE_TOLERANCE;
+        let kind = format!(
+            "unit whose time goes {} times as fast as the host's: {} s of it came in {} s",
+            plain(times, 3),
+            plain(stamped, 4),
+            plain(arrived_s, 4)
+        );
+        AccountEntry::new(u64::from(is_off), kind).weight(Weight::Doubt)
     }
 
     fn silent(&self) -> SourceError {
@@ -208,6 +231,13 @@ impl Source for LiveSource {
         (self.total < u64::MAX).then_some(self.total)
     }
 
+    fn accounts(&self) -> Vec<Account> {
+        let name = self.instrument.uri.to_string();
+        let outside = self.clock.outside();
+        let account = account(&name, &self.sampler, self.feed.counters(), outside);
+        vec![self.feed.losses(account).note(self.pace())]
+    }
+
     fn is_live(&self) -> bool {
         true
     }
@@ -264,6 +294,7 @@ pub(crate) mod tests {
     use std::net::UdpSocket;
 
     pub(crate) const PERIOD_NS: u64 = 5_000_000;
+    const RATE_HZ: f64 = 200.0;
 
     pub(crate) fn sample(number: u64) -> Sample {
         let k = number as i32;
@@ -297,8 +328,7 @@ pub(crate) mod tests {
             pulses: None,
             known_stamps: None,
         };
-        let source =
-            LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(samples)).unwrap();
+        let source = LiveSource::open(&instrument, Path::new(""), RATE_HZ, Some(samples)).unwrap();
         let address = source.reached_at();
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.connect(address.strip_prefix("udp:").unwrap()).unwrap();
@@ -341,7 +371,7 @@ pub(crate) mod tests {
             pulses: None,
             known_stamps: None,
         };
-        let mut source = LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(2)).unwrap();
+        let mut source = LiveSource::open(&instrument, Path::new(""), RATE_HZ, Some(2)).unwrap();
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.connect(source.reached_at().strip_prefix("udp:").unwrap()).unwrap();
         socket.send(&frame).unwrap();

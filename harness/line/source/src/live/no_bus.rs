@@ -2,6 +2,7 @@
 
 use super::arrival::Arrival;
 use crate::SourceError;
+use octant_account::Account;
 use octant_instruments::Reading;
 use octant_link::Uri;
 use octant_scenario::Messages;
@@ -22,6 +23,10 @@ impl Bus {
     }
 
     pub(super) fn receive(&mut self, _: Duration) -> Result<bool, String> {
+        match *self {}
+    }
+
+    pub(super) fn losses(&self, _: Account) -> Account {
         match *self {}
     }
 

@@ -50,6 +50,8 @@ pub struct Scenario {
     pub seed: u64,
     /// Sample period, ns.
     pub sample_period_ns: u64,
+    /// Rate of the samples as it is written, Hz: the period is this to a nanosecond.
+    pub sample_rate_hz: f64,
     /// Place of the instrument.
     pub site: plant::PlantSite,
     /// Motion of the case.
@@ -279,7 +281,13 @@ impl Scenario {
     #[must_use]
     pub fn calibration_samples(&self) -> u64 {
         let duration_s = self.calibration.as_ref().map_or(0.0, |c| c.duration_s);
-        (duration_s * 1e9).round() as u64 / self.sample_period_ns
+        self.samples_in(duration_s)
+    }
+
+    /// Number of samples in a time, as the core counts them.
+    fn samples_in(&self, time_s: f64) -> u64 {
+        ((time_s * 1e9).round() as u64).saturating_add(self.sample_period_ns / 2)
+            / self.sample_period_ns
     }
 
     /// Number of samples of the whole procedure; `None` if navigation lasts until the source ends.
@@ -289,10 +297,7 @@ impl Scenario {
             None => 0.0,
             Some(plan) => plan.duration_s?,
         };
-        Some(
-            self.calibration_samples()
-                + (navigation_s * 1e9).round() as u64 / self.sample_period_ns,
-        )
+        Some(self.calibration_samples() + self.samples_in(navigation_s))
     }
 
     /// Properties of a run that faults need.

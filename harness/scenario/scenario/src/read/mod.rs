@@ -34,7 +34,7 @@ use std::path::Path;
 /// Reads a completed document.
 pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
     let keys = ScenarioKeys::of(&Reader::root(&document))?;
-    let sample_period_ns = instrument::sample_period_ns(&keys.imu.rate)?;
+    let sample_period_ns = instrument::sample_period_ns(*keys.imu.rate);
     let source = source::read(&keys.source, sample_period_ns)?;
     let site = plant::PlantSite {
         latitude_rad: keys.site.latitude,
@@ -52,6 +52,7 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
     let drive = drive.map(|keys| drive::drive(keys, &turntable)).transpose()?;
     let setting = procedure::Setting {
         sample_period_ns,
+        sample_rate_hz: *keys.imu.rate,
         motion: &motion,
         turntable: &turntable,
         endless: !source.is_recorded(),
@@ -66,6 +67,7 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
         title: keys.title.clone(),
         seed: keys.seed,
         sample_period_ns,
+        sample_rate_hz: *keys.imu.rate,
         site,
         parameters: instrument::parameters(&keys.imu),
         further: further::drawn(&keys)?,

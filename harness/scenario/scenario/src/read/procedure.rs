@@ -25,6 +25,7 @@ use std::path::Path;
 /// Properties of the run that the procedure must fit.
 pub(super) struct Setting<'a> {
     pub(super) sample_period_ns: u64,
+    pub(super) sample_rate_hz: f64,
     pub(super) motion: &'a MotionSpec,
     pub(super) turntable: &'a plant::TurntableConfig,
     /// True if the source never ends, unlike a recording.
@@ -185,7 +186,7 @@ fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<Calibrat
     let passes = keys.passes;
     let (name, sequence) = sequence::of(keys)?;
     let duration_s = *keys.duration;
-    if samples_of(duration_s, setting.sample_period_ns).is_none() {
+    if samples_of(duration_s, setting).is_none() {
         return Err(not_whole(&keys.duration, setting));
     }
     let aiding = aiding(&keys.aiding, setting)?;
@@ -226,9 +227,12 @@ fn not_whole<T>(time: &At<T>, setting: &Setting<'_>) -> Problem {
 }
 
 /// Number of samples in a time, if it is a multiple of the sample period.
-fn samples_of(time_s: f64, sample_period_ns: u64) -> Option<u64> {
-    let ns = (time_s * 1e9).round() as u64;
-    (ns > 0 && ns.is_multiple_of(sample_period_ns)).then(|| ns / sample_period_ns)
+fn samples_of(time_s: f64, setting: &Setting<'_>) -> Option<u64> {
+    let samples = time_s * setting.sample_rate_hz;
+    let is_whole = samples >= 0.5 && (samples - samples.round()).abs() <= 1e-3;
+    // Counted by the period, as the core counts them.
+    let period_ns = setting.sample_period_ns;
+    is_whole.then(|| ((time_s * 1e9).round() as u64).saturating_add(period_ns / 2) / period_ns)
 }
 
 /// Total duration of the moves of all passes, s: both gimbals turn together, with a trapezoidal rate
@@ -263,10 +267,9 @@ struct Aiding {
 const SWAY_PERIOD_MAX_S: f64 = 2.0;
 
 fn aiding(keys: &AidingKeys, setting: &Setting<'_>) -> Result<Aiding, Problem> {
-    let period_ns = (*keys.period * 1e9).round() as u64;
-    if samples_of(*keys.period, setting.sample_period_ns).is_none() {
-        return Err(not_whole(&keys.period, setting));
-    }
+    let samples = samples_of(*keys.period, setting);
+    let samples = samples.ok_or_else(|| not_whole(&keys.period, setting))?;
+    let period_ns = samples * setting.sample_period_ns;
     let dimension = match *keys.reference {
         Reference::DockPosition => UnitDimension::LENGTH,
         Reference::ZeroVelocity | Reference::Velocity => UnitDimension::VELOCITY,
@@ -409,7 +412,7 @@ fn navigation(
             let message = "missing, expected a time such as \"24 h\": the source never ends";
             return Err(keys.duration.problem(message));
         }
-        Some(duration_s) if samples_of(duration_s, setting.sample_period_ns).is_none() => {
+        Some(duration_s) if samples_of(duration_s, setting).is_none() => {
             return Err(not_whole(&keys.duration, setting));
         }
         _ => {}
