@@ -11,4 +11,7 @@ mod common {
 mod can_source;
 mod reference_rows;
 mod replay;
+mod tcp_source;
 mod text;
+mod udp_source;
+mod unit_frames;

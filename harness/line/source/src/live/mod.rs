@@ -143,11 +143,11 @@ impl LiveSource {
         SourceError::Gone { uri: self.instrument.uri.to_string(), reason }
     }
 
-    fn silent(&self) -> SourceError {
+    fn silent(&mut self) -> SourceError {
+        let said = self.feed.said(&self.instrument.speaks.told());
         self.gone(format!(
-            "no reading for {} s; {}",
-            self.instrument.silence_s,
-            self.feed.said(&self.instrument.speaks.told())
+            "no reading for {} s; received so far: {said}",
+            self.instrument.silence_s
         ))
     }
 }
@@ -226,7 +226,7 @@ impl Source for LiveSource {
         let ended = table.and_then(|table| table.end(broken).err());
         let ended = waited.or(ended);
         let counters = self.sampler.counters();
-        let protocol = self.instrument.speaks.told();
+        let said = self.feed.said(&self.instrument.speaks.told());
         let (instruments_clock, clock) = self.clock.told().unzip();
         let looks_ms = summary.as_ref().map(|summary| summary.figures.angles.time_within_ms);
         let (samples_times, time) =
@@ -237,7 +237,7 @@ impl Source for LiveSource {
         };
         let bench = BenchRecord {
             clock,
-            instrument: format!("{}, {protocol}", self.instrument.uri),
+            instrument: format!("{}: {said}", self.instrument.uri),
             instruments_clock,
             readings: BenchReadings {
                 behind: counters.behind,
@@ -379,7 +379,8 @@ pub(crate) mod tests {
         assert_eq!(
             error,
             "source udp:127.0.0.1:0 is gone: no reading for 0.3 s; received so far: 165 bytes, 3 \
-             readings, 0 other frames of protocol vectornav, 0 frames with a wrong checksum"
+             readings, 0 other frames of protocol vectornav, 0 frames with a wrong checksum; 15 bytes belong \
+             to no frame of this protocol"
         );
     }
 
