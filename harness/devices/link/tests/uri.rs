@@ -88,7 +88,8 @@ proptest! {
 /// Texts of all kinds, most of them near to a name of a port.
 fn any_text() -> impl Strategy<Value = String> {
     let schemes = prop::sample::select(SCHEMES.map(|scheme| scheme.name.to_owned()).to_vec());
-    let options = ["baud", "bitrate", "fd", "data_bitrate", "secret", "listen"].map(str::to_owned).to_vec();
+    let options =
+        ["baud", "bitrate", "fd", "data_bitrate", "secret", "listen"].map(str::to_owned).to_vec();
     let part = prop_oneof![
         prop::sample::select(options),
         prop::sample::select([":", "?", "=", "&", "[", "]", "::1", "%", "500000"].to_vec())

@@ -376,7 +376,10 @@ fn what_can_not_be_asked_for_twice_or_at_another_time_is_refused() {
     assert_says(&message, &["source.live.gyro_count is missing"]);
     for port in ["tcp:unit:7000", "tcp:0.0.0.0:7000?listen=1"] {
         let fine = instrument.replace("udp:7000", port);
-        assert!(problems_with(&format!("schema = 1\n{navigation}{fine}"), &[]).is_empty(), "{port}");
+        assert!(
+            problems_with(&format!("schema = 1\n{navigation}{fine}"), &[]).is_empty(),
+            "{port}"
+        );
     }
     let (_, path, message) = problem(&format!(
         "schema = 1\n{navigation}{}",
