@@ -29,12 +29,9 @@ pub(crate) fn stream(bytes: &[u8]) {
     let mut last = None;
     for event in events {
         let FramingEvent::Reading(reading) = event else { continue };
-        match sampler.sample(&reading, None) {
-            Ok(sample) => {
-                assert!(last.is_none_or(|last| sample.sequence > last));
-                last = Some(sample.sequence);
-            }
-            Err(_) => {}
+        if let Ok(sample) = sampler.sample(&reading, None) {
+            assert!(last.is_none_or(|last| sample.sequence > last));
+            last = Some(sample.sequence);
         }
     }
 }

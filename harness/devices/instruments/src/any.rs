@@ -128,6 +128,17 @@ impl AnyDecoder {
     }
 }
 
+impl AnyDecoder {
+    /// True if every frame has a checksum, which alone tells whether pieces of a frame belong together.
+    #[must_use]
+    pub fn has_checksums(&self) -> bool {
+        match self {
+            Self::Described(decoder) => decoder.protocol().has_checksums(),
+            _ => true,
+        }
+    }
+}
+
 impl Protocol {
     /// Name of the protocol in a scenario.
     #[must_use]

@@ -203,6 +203,12 @@ impl<P: Framing> FrameDecoder<P> {
         }
     }
 
+    /// The protocol.
+    #[must_use]
+    pub fn protocol(&self) -> &P {
+        &self.protocol
+    }
+
     /// Counts of the traffic so far.
     #[must_use]
     pub fn counters(&self) -> &ReadingCounters {

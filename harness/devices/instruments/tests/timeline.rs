@@ -133,12 +133,13 @@ fn every_gap_is_found_where_it_is_and_as_long_as_it_is() {
 
 #[test]
 fn stamps_of_bursts_and_of_few_digits_are_no_gaps_and_a_gap_among_them_is_one() {
-    let of = |digits: fn(u64) -> u64, lost: u64| {
+    type Digits = fn(u64) -> u64;
+    let of = |digits: Digits, lost: u64| {
         let there = numbers(4000, |k| (1000..1000 + lost).contains(&k));
         let stamps: Vec<u64> = there.iter().map(|k| digits(k * 5_000_000)).collect();
         placed(200.0, &stamps)
     };
-    let forms: [(&str, fn(u64) -> u64); 4] = [
+    let forms: [(&str, Digits); 4] = [
         ("four readings of one stamp", |ns| ns / 20_000_000 * 20_000_000),
         ("10 ms", |ns| (ns + 5_000_000) / 10_000_000 * 10_000_000),
         (

@@ -28,8 +28,8 @@ pub enum Uri {
     Slcan(SlcanUri),
     /// UDP: `udp:host:port`, `udp:host:port?secret=FILE`.
     Udp(Udp),
-    /// TCP: `tcp:host:port`.
-    Tcp(HostPort),
+    /// TCP: `tcp:host:port`; `tcp:host:port?listen=1` of an instrument that connects itself.
+    Tcp(Tcp),
     /// A program whose standard input and output are the line: `exec:./core --fast`.
     Exec(Exec),
     /// Standard input and output, for the device end of `exec:`: `stdio:`.
@@ -76,6 +76,15 @@ pub struct Udp {
     pub address: HostPort,
     /// File with the secret that both ends share; `None`: anyone may talk.
     pub secret: Option<String>,
+}
+
+/// A TCP address.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tcp {
+    /// Other end; at the end that listens, the address to listen at.
+    pub address: HostPort,
+    /// True if an instrument connects to this host, in place of the other way round.
+    pub listen: bool,
 }
 
 /// A program with its arguments. In its text, spaces separate them; there are no quotes.
@@ -175,8 +184,21 @@ const TCP: Scheme = Scheme {
     name: "tcp",
     devices: Some("a device on TCP: tcp:HOST:PORT"),
     medium: Medium::Line,
-    options: &[],
-    read: |parts| Ok(Uri::Tcp(HostForm::Wire.read(parts, "tcp")?)),
+    options: &["listen"],
+    read: |parts| {
+        let listen = match parts.get("listen") {
+            None => false,
+            Some("1") => true,
+            Some(found) => {
+                return Err(UriError::Value {
+                    option: "listen",
+                    found: found.to_owned(),
+                    expected: "1, or nothing where this host connects".to_owned(),
+                });
+            }
+        };
+        Ok(Uri::Tcp(Tcp { address: HostForm::Wire.read(parts, "tcp")?, listen }))
+    },
 };
 
 const EXEC: Scheme = Scheme {
@@ -260,7 +282,7 @@ fn slcan_bus(options: &AddressParts<'_>) -> Result<Bus, UriError> {
 pub fn instrument_help() -> String {
     format!(
         "Port of the instrument: serial:PORT?baud=RATE ({DEFAULT_BAUD} by default), udp:PORT (on loopback), \
-         udp:ADDRESS:PORT, tcp:PORT"
+         udp:ADDRESS:PORT, tcp:HOST:PORT, or tcp:ADDRESS:PORT?listen=1 of an instrument that connects to this host"
     )
 }
 
@@ -375,7 +397,9 @@ impl fmt::Display for Uri {
                 write!(f, "udp:{address}")?;
                 secret.iter().try_for_each(|file| write!(f, "?secret={file}"))
             }
-            Self::Tcp(address) => write!(f, "tcp:{address}"),
+            Self::Tcp(Tcp { address, listen }) => {
+                write!(f, "tcp:{address}{}", if *listen { "?listen=1" } else { "" })
+            }
             Self::Exec(Exec { program, arguments }) => {
                 write!(f, "exec:{program}")?;
                 arguments.iter().try_for_each(|argument| write!(f, " {argument}"))

@@ -24,6 +24,7 @@ fn a_name_is_what_it_was_read_from() {
         "udp::5005",
         "tcp:192.168.1.7:5005",
         "tcp:[::1]:5005",
+        "tcp:0.0.0.0:5005?listen=1",
         "exec:./core",
         "stdio:",
         "exec:python3 core.py --rate 200",
@@ -69,6 +70,7 @@ fn values_are_checked() {
     assert!(
         refused("tcp:::1:5005").contains("expected tcp:[::1]:5005: an IPv6 address is in brackets")
     );
+    assert!(refused("tcp:unit:5005?listen=0").contains("found listen=0, expected 1"));
     assert!(refused("udp:::1:5005").contains("expected udp:[::1]:5005"));
     assert!(refused("exec:").contains("exec:PROGRAM"));
     assert!(refused("exec:./core?fast=1").contains("it has no options"));
@@ -86,7 +88,8 @@ proptest! {
 /// Texts of all kinds, most of them near to a name of a port.
 fn any_text() -> impl Strategy<Value = String> {
     let schemes = prop::sample::select(SCHEMES.map(|scheme| scheme.name.to_owned()).to_vec());
-    let options = ["baud", "bitrate", "fd", "data_bitrate", "secret"].map(str::to_owned).to_vec();
+    let options =
+        ["baud", "bitrate", "fd", "data_bitrate", "secret", "listen"].map(str::to_owned).to_vec();
     let part = prop_oneof![
         prop::sample::select(options),
         prop::sample::select([":", "?", "=", "&", "[", "]", "::1", "%", "500000"].to_vec())

@@ -27,10 +27,9 @@ pub(super) fn traffic(
             _ = write!(said, " (with source.{table}.gyro_count and accel_count it is read)");
         }
     }
-    // Beside readings, lost bytes are damage of the line, which the checksums tell.
-    if counters.readings == 0 && counters.bytes_lost > 0 {
-        let bytes = counted(counters.bytes_lost, "byte", "bytes");
-        _ = write!(said, "; {bytes} belong to no frame of this protocol");
+    if counters.bytes_lost > 0 {
+        let bytes = counted(counters.bytes_lost, "byte belongs", "bytes belong");
+        _ = write!(said, "; {bytes} to no frame of this protocol");
     }
     said
 }

@@ -12,4 +12,7 @@ mod can_source;
 mod counting;
 mod reference_rows;
 mod replay;
+mod tcp_source;
 mod text;
+mod udp_source;
+mod unit_frames;

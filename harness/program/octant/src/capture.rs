@@ -8,7 +8,6 @@ use octant_base::interrupt;
 use octant_link::Uri;
 use octant_link::port::{self, Bytes, Port};
 use octant_verdict::Verdict;
-use octant_wire::message::EndRole;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -57,7 +56,7 @@ pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> 
             format!("found {uri}, expected no secret: an instrument's datagrams have no seal");
         return Err(Failure::input(message));
     }
-    let Port::Bytes(mut port) = port::open(&uri, EndRole::Device)
+    let Port::Bytes(mut port) = port::open_instrument(&uri)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?
     else {
         return Err(Failure::input(format!("found {uri}, expected a serial line, UDP or TCP")));
@@ -65,7 +64,9 @@ pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> 
     let mut written = Written::new(out)?;
     interrupt::watch(|| {})
         .map_err(|error| Failure::bench(format!("failed to wait for Ctrl-C: {error}")))?;
-    note!("octant: listening on {}", port.reached_at());
+    let does =
+        if matches!(&uri, Uri::Tcp(tcp) if !tcp.listen) { "connected to" } else { "listening on" };
+    note!("octant: {does} {}", port.reached_at());
     let ended = written.receive(port.as_mut(), duration, silence);
     written.flush()?;
     print(&written.summary(out))?;

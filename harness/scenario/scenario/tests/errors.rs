@@ -137,6 +137,9 @@ fn what_is_said_about_a_port_is_checked_before_it_is_opened() {
     assert_says(&message, &["found option \"boud\" of serial:", "expected baud?"]);
     let (.., message) = port("slcan:/dev/ttyACM0");
     assert_says(&message, &["found bitrate=nothing", "slcan has a command for no other"]);
+    let (_, path, message) = port("tcp:0.0.0.0:5005?listen=1");
+    assert_eq!(path, "endpoint.uri");
+    assert_says(&message, &["expected tcp:HOST:PORT alone", "an instrument that connects"]);
     let link = |more: &str| {
         problem(&format!(
             "{HEAD}[endpoint]\nuri = \"udp:localhost:5005\"\n[endpoint.link]\n{more}\n"
@@ -368,6 +371,19 @@ fn what_can_not_be_asked_for_twice_or_at_another_time_is_refused() {
     let (_, path, message) = problem(&format!("schema = 1\n{navigation}{receiver}{half}"));
     assert_eq!(path, "source.live.accel_count");
     assert_says(&message, &["source.live.gyro_count is missing"]);
+    for port in ["tcp:unit:7000", "tcp:0.0.0.0:7000?listen=1"] {
+        let fine = instrument.replace("udp:7000", port);
+        assert!(
+            problems_with(&format!("schema = 1\n{navigation}{fine}"), &[]).is_empty(),
+            "{port}"
+        );
+    }
+    let (_, path, message) = problem(&format!(
+        "schema = 1\n{navigation}{}",
+        instrument.replace("udp:7000", "exec:./unit")
+    ));
+    assert_eq!(path, "source.uri");
+    assert_says(&message, &["found \"exec:./unit\""]);
     let clock = "[realtime]\npace = \"clock\"\n";
     let fine = format!("schema = 1\n{navigation}{instrument}");
     assert!(problems_with(&fine, &[]).is_empty());

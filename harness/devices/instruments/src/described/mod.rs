@@ -251,6 +251,12 @@ impl Described {
         let (counter, stamp) = (description.counter, description.stamp);
         Self { description, counter, stamp }
     }
+
+    /// True if every frame has a checksum.
+    #[must_use]
+    pub fn has_checksums(&self) -> bool {
+        self.description.frames().iter().all(|frame| frame.checksum.is_some())
+    }
 }
 
 /// Finds readings in a stream of bytes.

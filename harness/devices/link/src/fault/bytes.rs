@@ -281,6 +281,10 @@ impl Bytes for FaultyBytes {
         self.inner.datagrams()
     }
 
+    fn connections(&self) -> u64 {
+        self.inner.connections()
+    }
+
     fn reached_at(&self) -> String {
         self.inner.reached_at()
     }

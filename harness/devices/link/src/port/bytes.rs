@@ -24,6 +24,12 @@ pub trait Bytes: Debug + Send {
     /// True if [`Self::receive`] gives whole datagrams, not pieces of a line.
     fn datagrams(&self) -> bool;
 
+    /// Number of connections that were made so far; 0: the port makes none. What comes from another one doesn't continue
+    /// what came before.
+    fn connections(&self) -> u64 {
+        0
+    }
+
     /// Name under which the other end reaches this port.
     fn reached_at(&self) -> String;
 

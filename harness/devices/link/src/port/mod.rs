@@ -64,8 +64,14 @@ pub fn open(uri: &Uri, role: EndRole) -> Result<Port, PortError> {
         (Uri::Slcan(slcan), _) => Ok(Port::Frames(Box::new(SlcanPort::open(slcan)?))),
         (Uri::Udp(udp), EndRole::Harness) => Ok(Port::Bytes(Box::new(UdpPort::connect(udp)?))),
         (Uri::Udp(udp), _) => Ok(Port::Bytes(Box::new(UdpPort::listen(udp)?))),
-        (Uri::Tcp(tcp), EndRole::Harness) => Ok(Port::Bytes(Box::new(TcpPort::connect(tcp)?))),
-        (Uri::Tcp(tcp), _) => Ok(Port::Bytes(Box::new(TcpPort::listen(tcp)?))),
+        (Uri::Tcp(tcp), _) if tcp.listen => Err(PortError::open(
+            uri,
+            "listen is for an instrument that connects to this host, expected tcp:HOST:PORT alone",
+        )),
+        (Uri::Tcp(tcp), EndRole::Harness) => {
+            Ok(Port::Bytes(Box::new(TcpPort::connect(&tcp.address)?)))
+        }
+        (Uri::Tcp(tcp), _) => Ok(Port::Bytes(Box::new(TcpPort::listen(&tcp.address)?))),
         (Uri::Exec(exec), EndRole::Harness) => Ok(Port::Bytes(Box::new(ExecPort::open(exec)?))),
         (Uri::Exec(_), _) => Err(PortError::open(
             uri,
@@ -77,6 +83,19 @@ pub fn open(uri: &Uri, role: EndRole) -> Result<Port, PortError> {
         )),
         (Uri::Stdio, _) => Ok(Port::Bytes(Box::new(StdioPort::open()?))),
         (Uri::Can(can), role) => open_can(can, role),
+    }
+}
+
+/// Opens the port of an instrument that sends on its own. An instrument on TCP, or the server of its serial line, is
+/// connected to, unless the URI says that it connects itself; on UDP this host listens.
+///
+/// # Errors
+/// If the port can't be opened.
+pub fn open_instrument(uri: &Uri) -> Result<Port, PortError> {
+    match uri {
+        Uri::Tcp(tcp) if tcp.listen => Ok(Port::Bytes(Box::new(TcpPort::listen(&tcp.address)?))),
+        Uri::Tcp(tcp) => Ok(Port::Bytes(Box::new(TcpPort::connect(&tcp.address)?))),
+        other => open(other, EndRole::Device),
     }
 }
 

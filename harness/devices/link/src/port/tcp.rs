@@ -2,7 +2,6 @@
 
 use super::bytes::Bytes;
 use super::error::PortError;
-use crate::Uri;
 use crate::uri::HostPort;
 use octant_base::address::CONNECT_LIMIT;
 use std::io::{ErrorKind, Read, Write};
@@ -29,6 +28,8 @@ pub struct TcpPort {
     held: bool,
     /// Time at which the connection was made, or its session ended.
     idle_since: Instant,
+    /// Number of connections that were made.
+    connections: u64,
 }
 
 impl TcpPort {
@@ -37,18 +38,9 @@ impl TcpPort {
     /// # Errors
     /// If nobody listens there.
     pub fn connect(tcp: &HostPort) -> Result<Self, PortError> {
-        let uri = Uri::Tcp(tcp.clone()).to_string();
+        let uri = format!("tcp:{tcp}");
         let stream = tcp.connect(CONNECT_LIMIT).map_err(|error| PortError::open(&uri, error))?;
-        let stream = Some(stream);
-        Ok(Self {
-            uri,
-            tcp: tcp.clone(),
-            listener: None,
-            stream,
-            wait: None,
-            held: false,
-            idle_since: Instant::now(),
-        })
+        Ok(Self { stream: Some(stream), connections: 1, ..Self::of(uri, tcp) })
     }
 
     /// Listens at the device end.
@@ -56,22 +48,26 @@ impl TcpPort {
     /// # Errors
     /// If the address doesn't belong to this host, or the port is taken.
     pub fn listen(tcp: &HostPort) -> Result<Self, PortError> {
-        let name = Uri::Tcp(tcp.clone()).to_string();
+        let name = format!("tcp:{tcp}");
         let refused = |error: std::io::Error| PortError::open(&name, error);
         let addresses = tcp.resolve(CONNECT_LIMIT).map_err(refused)?;
         let listener = TcpListener::bind(&*addresses).map_err(refused)?;
         listener.set_nonblocking(true).map_err(refused)?;
         let uri = format!("tcp:{}", listener.local_addr().map_err(refused)?);
-        let listener = Some(listener);
-        Ok(Self {
+        Ok(Self { listener: Some(listener), ..Self::of(uri, tcp) })
+    }
+
+    fn of(uri: String, tcp: &HostPort) -> Self {
+        Self {
             uri,
             tcp: tcp.clone(),
-            listener,
+            listener: None,
             stream: None,
             wait: None,
             held: false,
             idle_since: Instant::now(),
-        })
+            connections: 0,
+        }
     }
 
     fn gone(&self, reason: impl ToString) -> PortError {
@@ -88,6 +84,7 @@ impl TcpPort {
                     set_up(&stream).map_err(|error| self.gone(error))?;
                     (self.stream, self.wait) = (Some(stream), None);
                     self.idle_since = Instant::now();
+                    self.connections += 1;
                     return Ok(true);
                 }
                 Err(error) if passes(&error) => {}
@@ -174,6 +171,10 @@ impl Bytes for TcpPort {
         false
     }
 
+    fn connections(&self) -> u64 {
+        self.connections
+    }
+
     fn reached_at(&self) -> String {
         self.uri.clone()
     }
@@ -189,7 +190,8 @@ impl Bytes for TcpPort {
 
     fn reopen(&mut self) -> Result<(), PortError> {
         if self.listener.is_none() {
-            *self = Self::connect(&self.tcp)?;
+            let connections = self.connections + 1;
+            *self = Self { connections, ..Self::connect(&self.tcp)? };
         }
         Ok(())
     }

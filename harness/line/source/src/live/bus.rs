@@ -72,7 +72,7 @@ impl Bus {
     pub(super) fn said(&self) -> String {
         let counters = self.gatherer.counters();
         format!(
-            "received so far: {}, {}, {} of other messages, {} with a missing message, {} with messages \
+            "{}, {}, {} of other messages, {} with a missing message, {} with messages \
              of another sample",
             counted(counters.frames, "frame", "frames"),
             counted(counters.readings, "reading", "readings"),

@@ -9,10 +9,12 @@ use octant_account::Account;
 use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingCounters, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
-use octant_wire::EndRole;
 use std::path::Path;
 use std::time::Duration;
 use std::time::Instant;
+
+/// Number of bytes that are received at a time: the longest datagram, of which a shorter room would lose the rest.
+const RECEIVED_BYTES: usize = 1 << 16;
 
 /// Decoder of an instrument's port.
 #[derive(Debug)]
@@ -29,12 +31,26 @@ pub(super) struct Line {
     decoder: AnyDecoder,
     /// Why the first intact frame that can't be read can't.
     unread: Option<ReadingDefect>,
-    buffer: [u8; 4096],
+    buffer: Box<[u8]>,
     /// Range of the buffer that is not decoded yet.
     rest: std::ops::Range<usize>,
     /// Time at which the buffer was received.
     came: Arrival,
     clock: ArrivalClock,
+    connection: Connection,
+}
+
+/// The connection of a port that makes one.
+#[derive(Debug, Default)]
+struct Connection {
+    /// Why it is closed; `None` while it is open, or where this host listens.
+    closed: Option<String>,
+    /// Number of connections that were made, as they were counted last.
+    made: u64,
+    /// True until the decoder has ended what the one before left incomplete.
+    is_new: bool,
+    /// Whether the last reading has a number or a stamp, which shows what was lost between two connections.
+    numbered: Option<bool>,
 }
 
 impl Feed {
@@ -49,8 +65,7 @@ impl Feed {
             line => decoder(line, instrument.count, folder)?,
         };
         let decoder = decoder.ok_or_else(|| gone("it speaks no protocol of a line".to_owned()))?;
-        // The port waits for a sender, as a device does.
-        let port = match port::open(uri, EndRole::Device) {
+        let port = match port::open_instrument(uri) {
             Ok(Port::Bytes(mut port)) => {
                 // Without stamps of the kernel an arrival is the return of the read, which is told.
                 port.stamp_arrivals();
@@ -58,19 +73,21 @@ impl Feed {
             }
             Ok(Port::Frames(_)) => {
                 return Err(gone(
-                    "the port carries no bytes, expected a serial line or UDP".to_owned(),
+                    "the port carries no bytes, expected a serial line, UDP or TCP".to_owned(),
                 ));
             }
             Err(error) => return Err(gone(error.to_string())),
         };
+        let connection = Connection { made: port.connections(), ..Connection::default() };
         Ok(Self::Line(Box::new(Line {
             port,
             decoder,
             unread: None,
-            buffer: [0; 4096],
+            buffer: vec![0; RECEIVED_BYTES].into_boxed_slice(),
             rest: 0..0,
             came: Arrival::read(Instant::now()),
             clock: ArrivalClock::default(),
+            connection,
         })))
     }
 
@@ -93,12 +110,7 @@ impl Feed {
     /// Waits for more data; returns whether any came.
     pub(super) fn receive(&mut self, wait: Duration) -> Result<bool, String> {
         match self {
-            Self::Line(line) => {
-                let came = line.port.receive(&mut line.buffer, wait);
-                line.rest = 0..came.map_err(|error| error.to_string())?;
-                line.came = line.clock.arrival(line.port.arrived());
-                Ok(!line.rest.is_empty())
-            }
+            Self::Line(line) => line.receive(wait),
             Self::Bus(bus) => bus.receive(wait),
         }
     }
@@ -126,34 +138,126 @@ impl Feed {
         }
     }
 
-    /// Summarises the data received so far, for the error about missing readings.
-    pub(super) fn said(&self, protocol: &str) -> String {
+    /// Describes the data received so far.
+    pub(super) fn said(&mut self, protocol: &str) -> String {
         match self {
             Self::Line(line) => {
+                // Bytes of a frame whose rest didn't come are lost; a whole frame behind a sync by chance is one.
+                while line.decoder.end().is_some() {}
                 let said = traffic(line.decoder.counters(), line.unread, protocol, "live");
-                format!("received so far: {said}")
+                format!("{said}{}", line.connection.said())
             }
             Self::Bus(bus) => bus.said(),
         }
     }
 }
 
+impl Connection {
+    /// Describes the connections, where there was more than one, or none is left.
+    fn said(&self) -> String {
+        let made = match self.made {
+            0 | 1 => String::new(),
+            made => format!("; {made} connections"),
+        };
+        match &self.closed {
+            None => made,
+            Some(reason) => format!("{made}; no connection: {reason}"),
+        }
+    }
+
+    /// Notes that a connection ended.
+    ///
+    /// # Errors
+    /// If the readings don't show what is lost until the next one.
+    fn ended(&mut self) -> Result<(), String> {
+        self.is_new = true;
+        if self.numbered == Some(false) {
+            return Err("the connection was closed, and the readings have neither number nor stamp: what is lost \
+                        until the next connection couldn't be noticed"
+                .to_owned());
+        }
+        Ok(())
+    }
+}
+
 impl Line {
+    /// Waits for more data; returns whether any came. A closed connection is made again.
+    fn receive(&mut self, wait: Duration) -> Result<bool, String> {
+        self.rest = 0..0;
+        if self.connection.closed.is_some() {
+            if let Err(error) = self.port.reopen() {
+                self.connection.closed = Some(error.to_string());
+                std::thread::sleep(wait);
+                return Ok(false);
+            }
+            (self.connection.closed, self.connection.made) = (None, self.port.connections());
+        }
+        let came = self.port.receive(&mut self.buffer, wait);
+        let made = self.port.connections();
+        let count = match came {
+            Ok(count) => count,
+            Err(error) if made > 0 => {
+                self.connection.closed = Some(error.to_string());
+                self.connection.ended()?;
+                // One that accepts and closes again and again isn't asked without a pause.
+                std::thread::sleep(wait);
+                return Ok(false);
+            }
+            Err(error) => return Err(error.to_string()),
+        };
+        if made != self.connection.made {
+            // The instrument connected again.
+            if std::mem::replace(&mut self.connection.made, made) > 0 {
+                self.connection.ended()?;
+            }
+        }
+        self.rest = 0..count;
+        self.came = self.clock.arrival(self.port.arrived());
+        Ok(count > 0)
+    }
+
     fn reading(&mut self) -> Option<(Reading, Arrival)> {
         loop {
+            if self.connection.is_new {
+                // A frame doesn't continue in the next connection.
+                match self.decoder.end() {
+                    Some(event) => match self.taken(event) {
+                        Some(reading) => return Some(reading),
+                        None => continue,
+                    },
+                    None => self.connection.is_new = false,
+                }
+            }
             let mut bytes = &self.buffer[self.rest.clone()];
             let event = self.decoder.next(&mut bytes);
             self.rest.start = self.rest.end - bytes.len();
-            // A frame doesn't continue in the next datagram.
-            let event =
-                if event.is_none() && self.port.datagrams() { self.decoder.end() } else { event };
-            match event {
-                Some(FramingEvent::Reading(reading)) => return Some((reading, self.came)),
-                Some(FramingEvent::Lost(lost)) if lost.cause.is_intact() => {
+            // Nothing tells a frame without a checksum that continues in the next datagram from one whose rest was
+            // lost: the next datagram would be read as its rest.
+            let event = match event {
+                None if self.port.datagrams() && !self.decoder.has_checksums() => {
+                    self.decoder.end()
+                }
+                event => event,
+            };
+            if let Some(reading) = self.taken(event?) {
+                return Some(reading);
+            }
+        }
+    }
+
+    /// Notes an event; returns its reading.
+    fn taken(&mut self, event: FramingEvent) -> Option<(Reading, Arrival)> {
+        match event {
+            FramingEvent::Reading(reading) => {
+                self.connection.numbered =
+                    Some(reading.sequence.is_some() || reading.stamp.is_some());
+                Some((reading, self.came))
+            }
+            FramingEvent::Lost(lost) => {
+                if lost.cause.is_intact() {
                     self.unread.get_or_insert(lost.cause);
                 }
-                Some(FramingEvent::Lost(_)) => {}
-                None => return None,
+                None
             }
         }
     }

@@ -166,11 +166,11 @@ impl LiveSource {
         AccountEntry::new(u64::from(is_off), kind).weight(Weight::Doubt)
     }
 
-    fn silent(&self) -> SourceError {
+    fn silent(&mut self) -> SourceError {
+        let said = self.feed.said(&self.instrument.speaks.told());
         self.gone(format!(
-            "no reading for {} s; {}",
-            self.instrument.silence_s,
-            self.feed.said(&self.instrument.speaks.told())
+            "no reading for {} s; received so far: {said}",
+            self.instrument.silence_s
         ))
     }
 }
@@ -256,7 +256,7 @@ impl Source for LiveSource {
         let ended = table.and_then(|table| table.end(broken).err());
         let ended = waited.or(ended);
         let counters = self.sampler.counters();
-        let protocol = self.instrument.speaks.told();
+        let said = self.feed.said(&self.instrument.speaks.told());
         let (instruments_clock, clock) = self.clock.told().unzip();
         let looks_ms = summary.as_ref().map(|summary| summary.figures.angles.time_within_ms);
         let (samples_times, time) =
@@ -267,7 +267,7 @@ impl Source for LiveSource {
         };
         let bench = BenchRecord {
             clock,
-            instrument: format!("{}, {protocol}", self.instrument.uri),
+            instrument: format!("{}: {said}", self.instrument.uri),
             instruments_clock,
             readings: BenchReadings {
                 behind: counters.behind,
@@ -409,7 +409,8 @@ pub(crate) mod tests {
         assert_eq!(
             error,
             "source udp:127.0.0.1:0 is gone: no reading for 0.3 s; received so far: 165 bytes, 3 \
-             readings, 0 other frames of protocol vectornav, 0 frames with a wrong checksum"
+             readings, 0 other frames of protocol vectornav, 0 frames with a wrong checksum; 15 bytes belong \
+             to no frame of this protocol"
         );
     }
 

@@ -31,6 +31,10 @@ keys! {
                 "an instrument on a serial line: serial:/dev/ttyUSB0?baud=921600 (the default rate)",
             ),
             ("udp", "an instrument that sends to a UDP port of this host: udp:HOST:PORT"),
+            (
+                "tcp",
+                "an instrument on TCP, or the server of its serial line: tcp:HOST:PORT, to which this host connects; tcp:HOST:PORT?listen=1 where the instrument connects",
+            ),
             ("can", "an instrument on a CAN interface: can:can0"),
             (
                 "slcan",
@@ -58,7 +62,7 @@ keys! {
             "The reference trajectory that a solution is scored against.";
         live: Option<SourceLiveKeys>
             = table::<SourceLiveKeys>(),
-            derived("serial, udp, can and slcan: the defaults of its keys"),
+            derived("serial, udp, tcp, can and slcan: the defaults of its keys"),
             "What the instrument of source.uri speaks, and how it is mounted.";
         log: At<Option<SourceLogKeys>>
             = table::<SourceLogKeys>(), derived("needed by log:FILE"),

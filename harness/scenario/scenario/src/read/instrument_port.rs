@@ -22,9 +22,9 @@ pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
     let uri: Uri = (keys.uri.parse())
         .map_err(|error: octant_link::uri::UriError| keys.uri.problem(error.to_string()))?;
     let bus = matches!(uri, Uri::Can(_) | Uri::Slcan(_));
-    if !bus && !matches!(uri, Uri::Serial(_) | Uri::Udp(_)) {
+    if !bus && !matches!(uri, Uri::Serial(_) | Uri::Udp(_) | Uri::Tcp(_)) {
         let message =
-            format!("found {uri}, expected an instrument at serial:, udp:, can: or slcan:");
+            format!("found {uri}, expected an instrument at serial:, udp:, tcp:, can: or slcan:");
         return Err(keys.uri.problem(message));
     }
     if matches!(&uri, Uri::Udp(udp) if udp.secret.is_some()) {

@@ -17,6 +17,12 @@ pub(super) fn live(keys: &EndpointKeys) -> Result<Live, Problem> {
         let message = "found stdio:, expected exec: with the program whose input and output it is";
         return Err(keys.uri.problem(message));
     }
+    if matches!(&uri, Uri::Tcp(tcp) if tcp.listen) {
+        let message = format!(
+            "found {uri}, expected tcp:HOST:PORT alone: listen is for an instrument that connects to this host"
+        );
+        return Err(keys.uri.problem(message));
+    }
     let link = keys.link.as_ref().ok_or_else(|| keys.uri.problem("endpoint.link is missing"))?;
     let live = Live {
         uri,
