@@ -26,7 +26,6 @@ extern crate alloc;
 extern crate std;
 
 pub mod catalogue;
-mod changes;
 pub mod connection;
 mod dimension;
 pub mod host;
