@@ -17,7 +17,6 @@ pub mod constancy;
 pub mod history;
 pub mod measured;
 pub mod quadratic;
-pub mod refusal;
 pub mod store;
 
 use nalgebra::{SMatrix, SVector};

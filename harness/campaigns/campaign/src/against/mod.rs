@@ -19,8 +19,9 @@ use octant_observe::ensemble::{DriftBand, Ensemble, EnsembleError, ErrorBand, en
 use octant_sample::further::FURTHER_NAMES;
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
+use octant_statistics::sample::deviation_factors;
 use octant_statistics::sample::{ConfidenceInterval, mean};
-use octant_statistics::{deviation, paired, power};
+use octant_statistics::{paired, power};
 use sample::{ErrorFigures, FinalErrors, MethodSample, SampleCounts, SampleError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -244,7 +245,7 @@ fn compare(
     let rows = predicted + 2 * times.len() + finals.len();
     // Each row has two intervals.
     let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
-    let (low, high) = deviation::factors(count as u64 - 1, each)
+    let (low, high) = deviation_factors(count as u64 - 1, each)
         .ok_or_else(|| format!("{count} runs know no σ"))?;
     let student =
         paired::student(count - 1, each).ok_or_else(|| format!("{count} runs know no σ"))?;

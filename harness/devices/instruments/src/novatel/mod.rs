@@ -12,11 +12,9 @@
 //! bytes of longer ones count as lost.
 
 pub(crate) mod ascii;
-mod raw;
 mod scale;
 
-pub use ascii::write_line;
-pub use raw::RawImu;
+pub use ascii::{RawImu, write_line};
 pub use scale::{CountScale, scale_of};
 
 use crate::bytes::{Frame, Reader};
