@@ -28,7 +28,6 @@ extern crate std;
 pub mod catalogue;
 pub mod connection;
 mod dimension;
-pub mod host;
 pub mod kinds;
 mod once;
 pub mod receipt;

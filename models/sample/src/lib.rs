@@ -11,7 +11,6 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-pub mod aiding;
 pub mod canonical;
 pub mod counts;
 #[cfg(feature = "alloc")]
@@ -27,8 +26,7 @@ pub mod parameters;
 pub mod time;
 pub mod truth;
 
-pub use aiding::{Aiding, Reference};
-pub use epoch::Epoch;
+pub use epoch::{Aiding, Epoch, Reference};
 pub use gimbal::{GimbalAngles, GimbalCommand};
 pub use imu::{Sample, Status};
 pub use innovation::{Innovation, InnovationOf, NavigationCovariance};

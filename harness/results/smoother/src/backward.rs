@@ -16,8 +16,7 @@
 //! state i just after k gives it the mean N e a. rᵢ/√Nᵢᵢ is therefore the likelihood ratio of such a jump (de Jong
 //! and Penzer, 1998), whatever the filter believes of P.
 
-use super::store::StoreError;
-use crate::measured::{Measured, Node};
+use super::store::{Measured, Node, StoreError};
 use crate::store::Store;
 use crate::{StateVector, States};
 use nalgebra::{Matrix3, SMatrix, Vector3};

@@ -15,7 +15,6 @@
 pub mod backward;
 pub mod constancy;
 pub mod history;
-pub mod measured;
 pub mod quadratic;
 pub mod store;
 

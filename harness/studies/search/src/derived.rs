@@ -1,10 +1,10 @@
 //! The space that the catalogue of faults gives: every kind, around the values of its example.
 
 use crate::space::{Form, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, Space};
-use crate::toml_text::written;
 use octant_faults::catalogue::{Acts, FaultKind, Lasts, ParameterBounds, Takes};
 use octant_faults::kinds;
 use octant_scenario::{fault_dimension, fault_example, quantity_of};
+use toml::Value;
 
 /// Ratio of the ends of a range to the value of the example.
 const AROUND: f64 = 1000.0;
@@ -221,4 +221,22 @@ fn around(
     let is_whole = unit == "samples";
     let unit = unit.to_owned();
     Some(NumberRange { from, to, unit, is_logarithmic: from > 0.0, is_whole, digits: DIGITS })
+}
+
+/// Writes a value on one line.
+pub(crate) fn written(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("{text:?}"),
+        Value::Integer(number) => number.to_string(),
+        Value::Float(number) => format!("{number:?}"),
+        Value::Boolean(flag) => flag.to_string(),
+        Value::Datetime(time) => time.to_string(),
+        Value::Array(all) => {
+            format!("[{}]", all.iter().map(written).collect::<Vec<_>>().join(", "))
+        }
+        Value::Table(table) => {
+            let pairs = table.iter().map(|(key, value)| format!("{key:?} = {}", written(value)));
+            format!("{{ {} }}", pairs.collect::<Vec<_>>().join(", "))
+        }
+    }
 }

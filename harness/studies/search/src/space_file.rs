@@ -1,8 +1,8 @@
 //! The space of a search as a file.
 
+use super::derived::written;
 use crate::derived::{RunTimes, divided};
 use crate::space::{Form, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, Space};
-use crate::toml_text::written;
 use octant_base::names::suggestion;
 use octant_faults::kinds;
 use octant_scenario::quantity_of;

@@ -19,14 +19,13 @@
 //! that isn't known, a value that isn't possible, and a description of a newer version are errors with file and line.
 
 mod fields;
-mod problem;
 mod read;
 mod table;
 
-pub use problem::{DescriptionProblem, VERSION};
-
 use crate::described::{Described, DescribedDecoder, RecordDescription};
 use std::string::String;
+
+pub use table::{DescriptionProblem, VERSION};
 
 /// Description of a unit.
 #[derive(Clone, Debug)]

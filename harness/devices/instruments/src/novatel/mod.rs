@@ -17,11 +17,11 @@ mod scale;
 pub use ascii::{RawImu, write_line};
 pub use scale::{CountScale, scale_of};
 
+use super::framing::ProtocolFacts;
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
-use crate::facts::ProtocolFacts;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
