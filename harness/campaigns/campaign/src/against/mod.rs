@@ -18,7 +18,6 @@ use octant_base::display::DisplayUnits;
 use octant_observe::ensemble::{DriftBand, Ensemble, EnsembleError, ErrorBand, ensemble};
 use octant_sample::further::FURTHER_NAMES;
 use octant_sample::parameters::NAMES;
-use octant_scenario::Method;
 use octant_statistics::sample::deviation_factors;
 use octant_statistics::sample::{ConfidenceInterval, mean};
 use octant_statistics::{paired, power};
@@ -152,10 +151,8 @@ pub fn against_by(
             ));
             continue;
         }
-        let methods = std::iter::once(Method::Primary)
-            .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
         let (mut ensembles, mut samples) = (Vec::new(), Vec::new());
-        for method in methods {
+        for method in scenario.methods() {
             match ensemble(&scenario, method) {
                 Ok(ensemble) => {
                     let hours = times(&ensemble).map(|time| time.hours).collect();

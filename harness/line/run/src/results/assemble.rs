@@ -112,10 +112,7 @@ pub fn assemble_with(
     let references = reference(&ReferenceInput {
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
-        heading_rad: match &scenario.motion {
-            MotionSpec::Static(mean) => mean.heading_rad,
-            MotionSpec::Dockside(ship) => ship.mean.heading_rad,
-        },
+        heading_rad: scenario.motion.heading_rad(),
         angle_random_walk: scenario.imu.angle_random_walk,
         velocity_random_walk: scenario.imu.velocity_random_walk,
         calibration_s: scenario.calibration.as_ref().map(|c| c.duration_s),
