@@ -20,7 +20,6 @@ mod evidenced;
 mod export;
 mod failure;
 mod fault_page;
-mod fault_words;
 mod faults;
 mod fmu;
 mod followed;
