@@ -7,7 +7,6 @@ mod channel;
 mod digital;
 pub mod host;
 mod mapped;
-mod onset;
 mod parameters;
 mod physics;
 mod plant;
