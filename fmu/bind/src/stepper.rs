@@ -5,14 +5,14 @@ use super::settings::Starts;
 use octant_base::failing::{Failing, FailureKind};
 use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome};
-use octant_scenario::{Problem, ScenarioError};
+use octant_scenario::{FileProblems, Problem};
 
 /// Reasons why an FMU of a scenario can't be used, or stopped working.
 #[derive(Debug, thiserror::Error)]
 pub enum UseError {
     /// The scenario's settings don't fit the FMU.
     #[error(transparent)]
-    Mapping(#[from] ScenarioError),
+    Mapping(#[from] FileProblems),
     /// The FMU can't be opened or started.
     #[error("open {uri}: {reason}")]
     Open {
@@ -43,7 +43,7 @@ impl Failing for UseError {
 impl UseError {
     /// Wraps problems with a scenario's settings.
     pub fn problems(file: &str, problems: Vec<Problem>) -> Self {
-        Self::Mapping(ScenarioError { file: file.to_owned(), problems })
+        Self::Mapping(FileProblems { file: file.to_owned(), problems })
     }
 
     /// Wraps the reason why an FMU can't be opened.

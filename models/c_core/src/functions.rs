@@ -6,10 +6,9 @@
 #![allow(unsafe_code, reason = "memory of the caller is read and written")]
 
 use super::status::{self, CONFIG, MEMORY, NO_CORE, NO_ITEM, NULL, OK};
-use super::text::Buffer;
 use super::types::{CAiding, CConfig, COutput, CSample};
 use core::ffi::{c_char, c_void};
-use core::fmt::Write as _;
+use core::fmt::Write;
 use octant_calibration::Core;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, Output, Reference, Sample, Status};
@@ -399,4 +398,32 @@ pub unsafe extern "C" fn octant_core_load(
             Ok(())
         })
     })
+}
+
+/// Writes into a buffer, cuts off what doesn't fit, and ends with zero.
+pub(crate) struct Buffer<'a> {
+    bytes: &'a mut [u8],
+    length: usize,
+}
+
+impl<'a> Buffer<'a> {
+    /// An empty text; the buffer has at least one byte.
+    pub(crate) fn new(bytes: &'a mut [u8]) -> Self {
+        bytes[0] = 0;
+        Self { bytes, length: 0 }
+    }
+}
+
+impl Write for Buffer<'_> {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        let room = self.bytes.len() - 1 - self.length;
+        let mut end = text.len().min(room);
+        while !text.is_char_boundary(end) {
+            end -= 1;
+        }
+        self.bytes[self.length..self.length + end].copy_from_slice(&text.as_bytes()[..end]);
+        self.length += end;
+        self.bytes[self.length] = 0;
+        if end == text.len() { Ok(()) } else { Err(core::fmt::Error) }
+    }
 }

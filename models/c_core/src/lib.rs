@@ -14,5 +14,4 @@
 pub mod config;
 pub mod functions;
 pub mod status;
-mod text;
 pub mod types;

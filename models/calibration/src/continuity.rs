@@ -22,10 +22,8 @@
 //! turn that both measure, as at every start of a move. Velocity is examined in n, where a turn
 //! doesn't show.
 
-mod step;
 mod way;
 
-pub(crate) use step::POINTS;
 pub(crate) use way::{c_cb, gimbal_turn, share_of_turn};
 
 use crate::config::{Base, Kalman, Noise, Screening, TurntableRates};
@@ -33,7 +31,6 @@ use nalgebra::{Matrix3, Vector3};
 use octant_sample::GimbalAngles;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::ParameterGroup;
-use step::DEGREE;
 use way::Way;
 
 /// Length of a block, s.
@@ -214,7 +211,7 @@ impl Continuity {
             * (prior(ParameterGroup::GyroBias)
                 + 10.0 * prior(ParameterGroup::GDependent)
                 + 7.3e-5 * kalman.prior.attitude_rad[2].min(0.05));
-        let weights = step::weights();
+        let weights = step_weights();
         // While the acceleration lasts, the mean of two encoder angles is wrong by a twelfth of the
         // turn that the acceleration causes from one sample to the next.
         let step = 0.5 * weights.iter().map(|one| one.abs()).sum::<f64>();
@@ -407,6 +404,41 @@ impl Continuity {
         }
         reached
     }
+}
+
+/// Blocks of the filter.
+pub(crate) const POINTS: usize = 20;
+
+/// Degree up to which polynomials are suppressed: a ship's sway of 6 s leaves 1e-6 of its rate.
+const DEGREE: usize = 7;
+
+/// Weights of a step from which the polynomials up to the degree are removed, of norm one.
+fn step_weights() -> [f64; POINTS] {
+    let at = |i: usize| (2.0 * i as f64 + 1.0) / POINTS as f64 - 1.0;
+    let dot =
+        |a: &[f64; POINTS], b: &[f64; POINTS]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let mut bases = [[0.0; POINTS]; DEGREE + 1];
+    let mut step: [f64; POINTS] = core::array::from_fn(|i| if 2 * i < POINTS { -1.0 } else { 1.0 });
+    for power in 0..=DEGREE {
+        // Made from the last basis vector, not from the power, and orthogonalised twice, which is
+        // enough (Giraud and others, 2005).
+        let mut basis: [f64; POINTS] = match power {
+            0 => [1.0; POINTS],
+            _ => core::array::from_fn(|i| bases[power - 1][i] * at(i)),
+        };
+        for _ in 0..2 {
+            for other in &bases[..power] {
+                let share = dot(&basis, other);
+                basis.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
+            }
+        }
+        let norm = libm::sqrt(dot(&basis, &basis));
+        bases[power] = basis.map(|value| value / norm);
+        let share = dot(&step, &bases[power]);
+        step.iter_mut().zip(&bases[power]).for_each(|(value, basis)| *value -= share * basis);
+    }
+    let norm = libm::sqrt(dot(&step, &step));
+    step.map(|value| value / norm)
 }
 
 #[cfg(test)]

@@ -26,10 +26,8 @@ extern crate alloc;
 extern crate std;
 
 pub mod catalogue;
-mod changes;
 pub mod connection;
 mod dimension;
-pub mod host;
 pub mod kinds;
 mod once;
 pub mod receipt;

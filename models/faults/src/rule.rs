@@ -5,7 +5,6 @@
 //! [`State`]: a rule that was built from the same values and loads that state continues as the
 //! original would.
 
-use crate::host::HostAction;
 use crate::setup::Stream;
 use crate::wire::WireFault;
 use alloc::boxed::Box;
@@ -251,4 +250,45 @@ pub enum UnitEvent {
         /// Duration, s.
         length_s: f64,
     },
+}
+
+/// Fault of the harness's own host: its processors, its disk, its recorder. The program that runs on the host realises
+/// it. Its duration is fixed, in host time: a starved thread could not end the fault that starves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HostAction {
+    /// All processors are busy.
+    Starve {
+        /// Duration, s.
+        lasts_s: f64,
+        /// Threads that load each processor.
+        threads: u32,
+    },
+    /// The disk of the recording is full from now on.
+    FillDisk,
+    /// The thread that writes the recording stops for a time.
+    StallRecorder {
+        /// Duration, s.
+        pause_s: f64,
+    },
+}
+
+/// A host that can be disturbed.
+pub trait Hosted {
+    /// Begins a fault. Called on the thread of the samples: the disturbance itself runs on other
+    /// threads. Returns false if the host has nothing on which the fault could act.
+    fn begin(&mut self, action: &HostAction) -> bool;
+}
+
+/// Detects a new onset. The detector compares the number of the firing and doesn't wait for the
+/// first epoch, which may have been lost on the way to the rule.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Onset {
+    firing: Option<u32>,
+}
+
+impl Onset {
+    /// Returns true at the first epoch of a firing that the rule sees.
+    pub(crate) fn is_new(&mut self, now: &Context<'_>) -> bool {
+        self.firing.replace(now.firing) != Some(now.firing)
+    }
 }

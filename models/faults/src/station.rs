@@ -11,19 +11,21 @@ mod passage;
 mod stage;
 mod state;
 
+use super::rule::Hosted;
 use crate::catalogue::{Acts, FaultKind, Lasts};
-use crate::host::Hosted;
 use crate::receipt::{Ledger, Receipt};
 use crate::rule::{FaultRule, SetPoints, UnitEvent};
 use crate::setup::{FaultBuildError, Setup};
 use crate::trigger::{Clock, News, Scene, Schedule, Trigger};
 use crate::values::Values;
 use crate::wire::Wired;
+use alloc::collections::VecDeque;
 use alloc::string::String;
 use alloc::vec::Vec;
 use octant_random::stream::Phase;
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalCommand, Output, Truth};
+use octant_state::StateError;
 
 use stage::{Shared, Stage};
 
@@ -478,4 +480,11 @@ fn burst(stages: &[Stage]) -> Result<usize, (String, FaultBuildError)> {
         }
     }
     Ok(most)
+}
+
+/// Checks that a loaded queue is not longer than can be held back, and reserves room for as much.
+pub(super) fn check_queue<T>(queue: &mut VecDeque<T>) -> Result<(), StateError> {
+    octant_state::check_below("queue", queue.len() as u64, FLIGHT_MAX as u64)?;
+    queue.reserve_exact(FLIGHT_MAX - queue.len());
+    Ok(())
 }

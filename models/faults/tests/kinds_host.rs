@@ -2,7 +2,7 @@
 
 use crate::common::seconds;
 use octant_faults::catalogue::Acts;
-use octant_faults::host::{HostAction, Hosted};
+use octant_faults::rule::{HostAction, Hosted};
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{FaultSpec, Setup, Station, Value, Values, kinds};

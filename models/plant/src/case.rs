@@ -1,11 +1,11 @@
 //! Motion of the case: angular rate and specific force in the case frame c.
 
+use super::kinematics::SixDof;
 use crate::config::{self, CaseAttitude, PlantSite};
 use crate::course::Course;
 use crate::disturbed::Motion;
 use crate::kinematics::{CaseMotion, Node, Whereabouts};
 use crate::ship::{Ship, into_case, with};
-use crate::six_dof::SixDof;
 use crate::window::Frame;
 use nalgebra::Vector3;
 use octant_earth::ellipsoid::Ellipsoid;

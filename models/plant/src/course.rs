@@ -6,7 +6,7 @@
 //! it on the ellipsoid as from the plant's own sway, so that the sensors feel the same motion that
 //! truth reports.
 
-use crate::six_dof::{Dof, SixDof};
+use super::kinematics::{Dof, SixDof};
 
 /// One piece of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]

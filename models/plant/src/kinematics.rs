@@ -1,4 +1,4 @@
-//! Motion of the case at one time.
+//! Motion of the case at one time, and of a ship in six degrees of freedom.
 
 use nalgebra::Vector3;
 
@@ -33,3 +33,14 @@ pub(crate) enum Node {
     /// Seconds since the start of the interval.
     Offset(f64),
 }
+
+/// Value, rate and acceleration of one degree of freedom.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Dof {
+    pub(crate) value: f64,
+    pub(crate) rate: f64,
+    pub(crate) acceleration: f64,
+}
+
+/// Roll, pitch, yaw (rad), surge, sway, heave (m).
+pub(crate) type SixDof = [Dof; 6];

@@ -36,7 +36,6 @@ mod processes;
 mod reference;
 pub mod sea;
 mod ship;
-mod six_dof;
 mod sway;
 pub mod table;
 mod trig;

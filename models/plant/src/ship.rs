@@ -6,10 +6,10 @@
 //! transport rate, Coriolis and curvature terms:
 //! `f = C_cn (v̇ + (2 ω_ie + ω_en) × v − g)` (Titterton and Weston, 2004, sec. 3.5).
 
+use super::kinematics::SixDof;
 use crate::config::{CaseAttitude, Dockside, PlantSite};
 use crate::disturbed::Motion;
 use crate::kinematics::{CaseMotion, Node, Whereabouts};
-use crate::six_dof::SixDof;
 use crate::sway::Sway;
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use crate::window::Window;

@@ -1,9 +1,9 @@
 //! Sums of sinusoids in six degrees of freedom, advanced from sample to sample by a rotation of
 //! each phasor instead of a sine and cosine.
 
+use super::kinematics::{Dof, SixDof};
 use crate::config::{Dockside, Sinusoid};
 use crate::course::Course;
-use crate::six_dof::{Dof, SixDof};
 
 /// Samples after which the phasors are computed anew from the time, before rounding errors add up.
 const RESET_SAMPLES: u32 = 256;

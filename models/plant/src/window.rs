@@ -11,7 +11,7 @@
 //! restored state finds the same bits.
 
 use crate::interpolation::{self, NODES, Weights};
-use crate::six_dof::SixDof;
+use crate::kinematics::SixDof;
 use crate::sway::Sway;
 use nalgebra::Vector3;
 

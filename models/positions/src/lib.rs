@@ -10,7 +10,6 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod positions;
-pub mod rates;
 pub mod schedule;
 pub mod sequence;
 pub mod visits;

@@ -1,7 +1,6 @@
 //! Timing of the gimbals: dwell times that fill the calibration, and a cursor that visits the
 //! stops.
 
-use crate::rates::TurntableRates;
 use crate::sequence::{STOPS_MAX, Sequence, Stop};
 use octant_sample::{GimbalAngles, GimbalCommand};
 
@@ -249,4 +248,14 @@ impl Cursor {
     pub fn command(&self) -> GimbalCommand {
         self.command
     }
+}
+
+/// Rates of the turntable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub struct TurntableRates {
+    /// Largest rate of a move, rad/s.
+    pub rate_radps: f64,
+    /// Acceleration of a move, rad/s².
+    pub acceleration_radps2: f64,
 }

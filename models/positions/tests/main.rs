@@ -2,8 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use octant_positions::positions::{EIGHT, SIX, SIXTEEN, from_degrees};
-use octant_positions::rates::TurntableRates;
-use octant_positions::schedule::{Cursor, dwell_s, move_s, moves_s};
+use octant_positions::schedule::{Cursor, TurntableRates, dwell_s, move_s, moves_s};
 use octant_sample::GimbalAngles;
 
 const DT: f64 = 0.005;

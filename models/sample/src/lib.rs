@@ -11,7 +11,6 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-pub mod aiding;
 pub mod canonical;
 pub mod counts;
 #[cfg(feature = "alloc")]
@@ -22,19 +21,16 @@ pub mod gimbal;
 pub mod imu;
 pub mod innovation;
 mod largest_change;
-pub mod navigation_covariance;
 pub mod output;
 pub mod parameters;
 pub mod time;
 pub mod truth;
 
-pub use aiding::{Aiding, Reference};
-pub use epoch::Epoch;
+pub use epoch::{Aiding, Epoch, Reference};
 pub use gimbal::{GimbalAngles, GimbalCommand};
 pub use imu::{Sample, Status};
-pub use innovation::{Innovation, InnovationOf};
+pub use innovation::{Innovation, InnovationOf, NavigationCovariance};
 pub use largest_change::LargestChange;
-pub use navigation_covariance::NavigationCovariance;
 pub use output::{Health, Mode, Navigation, Output};
 pub use parameters::Parameters;
 pub use time::DeviceTime;

@@ -5,7 +5,6 @@
 //! its parent, because it is a subreaper. The guard runs no code of the FMU, so that no crash ends
 //! it. Requests and answers don't go through it: the FMU's process has the same socket and memory.
 
-use super::error::FmuServeError;
 use super::shared::{Shared, Word};
 use octant_base::child::{ForeignLines, OutputLimit};
 use octant_base::printable::printable;
@@ -203,4 +202,33 @@ fn is_readable(pipe: &impl AsFd) -> bool {
     let mut events = [PollFd::new(pipe, PollFlags::IN)];
     let now = Timespec { tv_sec: 0, tv_nsec: 0 };
     poll(&mut events, Some(&now)).is_ok_and(|ready| ready > 0)
+}
+
+/// Reason why the process of an FMU ends early.
+#[derive(Debug, thiserror::Error)]
+pub enum FmuServeError {
+    /// No process that provides its input and output started this one.
+    #[error("octant fmu host is started by octant itself, for an FMU that runs apart ({error})")]
+    NotStarted {
+        /// Error of the operating system.
+        error: io::Error,
+    },
+    /// The other process can't be watched.
+    #[error("{error}")]
+    Watch {
+        /// Error of the operating system.
+        error: io::Error,
+    },
+    /// The thread that watches the other process can't be started.
+    #[error("start a thread: {error}")]
+    Thread {
+        /// Error of the operating system.
+        error: io::Error,
+    },
+    /// The other process is gone.
+    #[error("octant fmu host lost the process that it serves: {error}")]
+    Lost {
+        /// Error of the operating system.
+        error: io::Error,
+    },
 }

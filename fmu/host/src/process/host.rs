@@ -5,7 +5,7 @@ use super::super::instance::open::{FmuOpenError, open_folder};
 use super::super::instance::{
     FmuMessage, Instance, InstanceError, StepOutcome, Stepped, VariableGroup,
 };
-use super::error::FmuServeError;
+use super::guard::FmuServeError;
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::remote::{DISCARDED, EARLY, EVENT, FAILED, TERMINATE};
 use super::shared::{Shared, Spin, Word, put, take};

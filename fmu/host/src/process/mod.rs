@@ -19,8 +19,6 @@
 //! process that the FMU started: the guard between them ends these.
 
 #[cfg(target_os = "linux")]
-pub mod error;
-#[cfg(target_os = "linux")]
 pub mod guard;
 #[cfg(target_os = "linux")]
 pub mod host;

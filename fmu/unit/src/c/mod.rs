@@ -155,7 +155,6 @@ mod models;
 mod registry;
 mod room;
 mod run;
-mod snapshots;
 mod state;
 mod step;
 mod ticks;

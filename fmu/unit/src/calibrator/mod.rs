@@ -2,7 +2,6 @@
 
 mod config;
 mod error;
-mod outputs;
 pub mod table;
 
 pub use config::{config, put, start_values};
@@ -19,8 +18,8 @@ use table::slot;
 
 /// Writes the state of the core into the Calibrator's outputs.
 pub(crate) fn put_outputs(output: &Output, core: &Core, values: &mut CellValues) {
-    outputs::put(output, values);
-    outputs::put_parameters(core, values);
+    put_stepped(output, values);
+    put_parameters(core, values);
 }
 
 /// The core, and the conversion of the variables to its samples.
@@ -137,8 +136,8 @@ impl ModelComponent for Calibrator {
             output,
             core,
         };
-        outputs::put(&this.output, values);
-        outputs::put_parameters(&this.core, values);
+        put_stepped(&this.output, values);
+        put_parameters(&this.core, values);
         Ok(this)
     }
 
@@ -163,11 +162,11 @@ impl ModelComponent for Calibrator {
         let sample = self.sample(values);
         let aiding = aiding(values, sample.device_time);
         self.core.step_into(&sample, aiding.as_ref(), &mut self.output);
-        outputs::put(&self.output, values);
+        put_stepped(&self.output, values);
         // A rejected measurement may restore earlier parameters without a new revision.
         if self.output.parameters_revision != self.revision || !self.output.nis.is_nan() {
             self.revision = self.output.parameters_revision;
-            outputs::put_parameters(&self.core, values);
+            put_parameters(&self.core, values);
         }
         if self.output.mode != self.mode {
             (self.mode, self.mode_changed) = (self.output.mode, true);
@@ -180,8 +179,8 @@ impl ModelComponent for Calibrator {
         if self.output.mode != self.mode {
             (self.mode, self.mode_changed) = (self.output.mode, true);
         }
-        outputs::put(&self.output, values);
-        outputs::put_parameters(&self.core, values);
+        put_stepped(&self.output, values);
+        put_parameters(&self.core, values);
     }
 
     #[inline]
@@ -244,4 +243,34 @@ impl Calibrator {
             core,
         })
     }
+}
+
+/// Writes the outputs that change with every sample.
+#[inline]
+fn put_stepped(output: &Output, values: &mut CellValues) {
+    let target = output.gimbal_command.target;
+    values.set_real(slot::COMMAND_AZIMUTH, target.azimuth_rad());
+    values.set_real(slot::COMMAND_ROLL, target.roll_rad());
+    values.set_integer(slot::MODE, output.mode as i32);
+    values.set_integer(slot::STOP, i32::from(output.stop));
+    values.set_boolean(slot::MOVING, output.moving);
+    let navigation = &output.navigation;
+    values.set_real(slot::LATITUDE, navigation.latitude_rad);
+    values.set_real(slot::LONGITUDE, navigation.longitude_rad);
+    values.set_real(slot::HEIGHT, navigation.height_m);
+    values.set_reals(slot::VELOCITY, &navigation.velocity_mps);
+    values.set_reals(slot::ATTITUDE, &navigation.q_nb);
+    let measured = !output.nis.is_nan();
+    values.set_real(slot::NIS, if measured { output.nis } else { 0.0 });
+    values.set_boolean(slot::MEASURED, measured);
+    values.set_integer(slot::HEALTH, output.health.bits() as i32);
+    values.set_count(slot::ANSWER_SEQUENCE, output.sequence);
+    values.set_count(slot::ANSWER_DEVICE_TIME, output.device_time.ns);
+    values.set_count(slot::REVISION, output.parameters_revision.into());
+}
+
+/// Writes the estimated parameters and their standard deviations.
+fn put_parameters(core: &Core, values: &mut CellValues) {
+    values.set_reals(slot::PARAMETERS, &core.parameters().to_array());
+    values.set_reals(slot::SIGMA, core.sigma());
 }

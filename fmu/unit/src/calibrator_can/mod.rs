@@ -12,18 +12,17 @@
 
 mod controller;
 mod device;
-mod error;
 mod operation;
 pub mod table;
 
-pub use error::CalibratorCanFailure;
-
+use super::calibrator::CalibratorValueError;
 use crate::calibrator;
 use crate::component::{ModelComponent, Network};
 use crate::table::{DeclaredCausality, DeclaredVariable, Model};
 use crate::values::CellValues;
 use controller::{Controller, Setup};
 use device::{Changed, Device};
+use octant_calibration::state_machine::CoreConfigError;
 use octant_state::{StateError, StateFormat};
 use octant_wire::can::{self, BusFrame, DropCause, Reassembler, ReassemblyEvent};
 use octant_wire::{EndRole, Unreadable};
@@ -251,4 +250,24 @@ impl CalibratorCan {
         from.part("reassembler", &mut self.reassembler)?;
         from.end()
     }
+}
+
+/// Reason why there is no device.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CalibratorCanFailure {
+    /// The values make no configuration of the core.
+    #[error(transparent)]
+    Value(#[from] CalibratorValueError),
+    /// The core can't be made from the configuration.
+    #[error(transparent)]
+    Config(#[from] CoreConfigError),
+    /// Frames that lose the bus would be lost.
+    #[error(
+        "can.arbitration_lost is discard, for which can.bus_notifications has to be true: frames \
+         that lose the bus would be lost"
+    )]
+    Discard,
+    /// The bytes are no state.
+    #[error(transparent)]
+    State(#[from] StateError),
 }

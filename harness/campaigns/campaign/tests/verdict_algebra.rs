@@ -16,7 +16,7 @@ use octant_realtime::schedule::{Granted, RequestOutcome};
 use octant_run::TimeKeeping;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
-use octant_score::judge::{Finding, FindingSubject, besides, derive, judge};
+use octant_score::judge::{Finding, FindingSubject, derive, except_requirements, judge};
 use octant_score::summary::{
     BaselineMethod, CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel,
     LatenessQuantiles, NavigationScore, PacingRecord, RadialScore, Summary,
@@ -258,10 +258,10 @@ proptest! {
         prop_assert!(summary.verdict == Verdict::Pass || !summary.reasons.is_empty());
         // A failed requirement doesn't hide other problems.
         let good = parts.is_whole() && !parts.checks.is_empty();
-        prop_assert_eq!(besides(&summary) == Verdict::Pass, good);
+        prop_assert_eq!(except_requirements(&summary) == Verdict::Pass, good);
         // Storing and reading again doesn't either.
         let read = Summary::from_json(&summary.to_json().unwrap()).unwrap();
-        prop_assert_eq!(besides(&read), besides(&summary));
+        prop_assert_eq!(except_requirements(&read), except_requirements(&summary));
         // The verdict and the reasons can be derived again, also from the file.
         for summary in [&summary, &read] {
             let derived = derive(summary);
@@ -545,7 +545,7 @@ proptest! {
         let summary = assemble(&scenario, 1, primary, Some(baseline)).unwrap().summary;
         let expected = if lost { Verdict::Inconclusive } else { Verdict::Pass };
         prop_assert_eq!(summary.verdict, expected, "{:?}", summary.reasons);
-        prop_assert_eq!(besides(&summary), expected);
+        prop_assert_eq!(except_requirements(&summary), expected);
     }
 }
 

@@ -1,9 +1,9 @@
 //! The list of the protocols, and the choice of one by its name.
 
+use super::framing::ProtocolFacts;
 use crate::Reading;
 use crate::described::DescribedDecoder;
 use crate::encoding::CannotCarry;
-use crate::facts::ProtocolFacts;
 use crate::framing::{FramingEvent, ReadingCounters};
 use crate::novatel::{CountScale, NovAtel, NovatelDecoder};
 

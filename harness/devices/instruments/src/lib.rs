@@ -57,7 +57,6 @@ mod axes;
 mod bytes;
 mod carry;
 mod encoding;
-mod facts;
 mod reading;
 mod sampler;
 #[cfg(any(feature = "dbc", feature = "descriptions"))]
@@ -66,8 +65,7 @@ mod units;
 pub use any::{AnyDecoder, AnyEncoder, Protocol};
 pub use axes::{Axes, AxesError};
 pub use encoding::CannotCarry;
-pub use facts::ProtocolFacts;
-pub use framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
+pub use framing::{FramingEvent, ProtocolFacts, ReadingCounters, ReadingDefect, UnreadBytes};
 pub use reading::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 pub use sampler::{Sampler, SamplerCounters, SamplerSettings, Unusable};
 pub use stamp_scale::{GPS_EPOCH_S, StampScale};

@@ -3,8 +3,8 @@
 //! The bytes are those described in `harness/devices/wire/README.md`. Samples of an instrument become readings;
 //! other messages pass. Increments are the counts of [`octant_sample::counts`] and lose nothing.
 
+use super::framing::ProtocolFacts;
 use crate::encoding::{CannotCarry, Needs};
-use crate::facts::ProtocolFacts;
 use crate::framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
 use crate::{MeasuredTriad, Reading};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};

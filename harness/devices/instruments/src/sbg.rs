@@ -9,11 +9,11 @@
 //! sculling, and the interval, which isn't sent, turns them into increments. Stamps are microseconds in
 //! 32 bits, which roll over every 71.6 minutes. Readings have no number.
 
+use super::framing::ProtocolFacts;
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
-use crate::facts::ProtocolFacts;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::rollover::Rollover;
 use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};

@@ -13,11 +13,11 @@
 //!
 //! Stamps are `TimeStartup`, else `TimeGps`. Readings have no number: a loss shows in the stamps alone.
 
+use super::framing::ProtocolFacts;
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
-use crate::facts::ProtocolFacts;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::{MeasuredTriad, Reading, Stamp, StampClock};
 use octant_sample::Status;

@@ -14,11 +14,11 @@
 //! the frame exactly, and each must have the length of its kind: only damage inside a number can go
 //! unnoticed.
 
+use super::framing::ProtocolFacts;
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
-use crate::facts::ProtocolFacts;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::rollover::Rollover;
 use crate::{MeasuredTriad, Reading, Stamp, StampClock};

@@ -4,6 +4,7 @@ use crate::journal;
 use crate::record::{Act, OperatorRecord};
 use crate::step::{OnNo, OperatorStep};
 use octant_base::names::suggestion;
+use octant_toml_tree::error::{Place, Problem};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -51,10 +52,20 @@ pub fn read(path: &Path, steps: &[OperatorStep]) -> Result<Vec<ScriptAnswer>, Sc
         same_questions(&records, steps).map_err(wrong)?;
         records.into_iter().filter_map(answer_of).collect()
     } else {
-        let read: Result<AnswerFile, _> = toml::from_str(&text);
-        read.map_err(|error| wrong(error.to_string()))?.answer
+        octant_toml_tree::read_as::<AnswerFile>(&text)
+            .map_err(|problem| wrong(told(&problem)))?
+            .answer
     };
     in_order(answers, steps).map_err(wrong)
+}
+
+/// A problem in one line, behind its place.
+fn told(problem: &Problem) -> String {
+    let message = problem.message.lines().collect::<Vec<_>>().join(", ");
+    match problem.place {
+        Place::File { line, column } => format!("line {line}, column {column}: {message}"),
+        _ => message,
+    }
 }
 
 /// Checks that a journal has the questions of these steps: an answer to another one is none.

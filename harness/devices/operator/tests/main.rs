@@ -291,7 +291,11 @@ fn a_file_of_answers_is_checked_against_the_steps() {
     std::fs::write(&path, "[[answer]]\nid = \"door\"\nvalue = \"no\"\n").unwrap();
     assert!(script::read(&path, &steps).unwrap_err().to_string().contains("asked again"));
     std::fs::write(&path, "[[answer]]\nid = \"door\"\nvalue = \"Yes\"\nbye = \"Ada\"\n").unwrap();
-    assert!(script::read(&path, &steps).unwrap_err().to_string().contains("bye"));
+    let error = script::read(&path, &steps).unwrap_err().to_string();
+    assert!(error.contains("line 4, column 1: unknown field `bye`, expected"), "{error}");
+    std::fs::write(&path, "[[answer]]\nid = \"door\"\nvalue = yes\n").unwrap();
+    let error = script::read(&path, &steps).unwrap_err().to_string();
+    assert!(error.contains("line 3, column 9: "), "{error}");
     std::fs::write(&path, "[[answer]]\nid = \"door\"\nvalue = \"Yes\"\n").unwrap();
     let answers = script::read(&path, &steps).unwrap();
     assert_eq!((answers[0].value.as_str(), &answers[0].by), ("yes", &None));

@@ -1,7 +1,7 @@
 //! Rotations that leave the drift to g_zz alone.
 
 use octant_calibration::positions::{NONE, SIXTEEN, TETRAHEDRAL, from_degrees};
-use octant_run::rotation::leaves_g_zz_alone;
+use octant_run::assemble::leaves_g_zz_alone;
 
 #[test]
 fn the_tetrahedral_rotation_mixes_all_three_axes() {

@@ -2,7 +2,7 @@
 
 use octant_sample::{GimbalCommand, Reference};
 use octant_scenario::resolve::{DrawnValues, Seeded};
-use octant_scenario::{Scenario, ScenarioError};
+use octant_scenario::{FileProblems, Scenario};
 use octant_source::{Epoch, Source};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -30,7 +30,7 @@ y = 6
 z = 7
 ";
 
-fn parsed(folder: &Path, more: &str) -> Result<Scenario, ScenarioError> {
+fn parsed(folder: &Path, more: &str) -> Result<Scenario, FileProblems> {
     Scenario::parse(&format!("schema = 1\n{ROWS}{more}"), "rows.toml", folder, &[])
 }
 

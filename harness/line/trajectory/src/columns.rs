@@ -1,7 +1,6 @@
 //! Columns of text.
 
-use super::point::{TimeScale, TrajectoryPoint};
-use super::points::{LINE_BYTES_MAX, Points};
+use super::point::{LINE_BYTES_MAX, Points, TimeScale, TrajectoryPoint};
 use csv::StringRecord;
 use octant_base::decimal::decimal_ns;
 use octant_base::number::counted;

@@ -15,7 +15,6 @@ mod messages;
 mod nmea;
 pub mod pairs;
 pub mod point;
-mod points;
 pub mod reader;
 mod rtklib;
 mod sbet;

@@ -3,8 +3,7 @@
 //! Messages of one time belong to one point. Once a unit knows GPS time or UTC its points have that; those before, which have
 //! its own clock alone, are left out, and so is what has no position that is valid. A unit that never knows it has a scale of its own.
 
-use super::point::{TimeScale, TrajectoryPoint, gps_to_utc_ns};
-use super::points::Points;
+use super::point::{Points, TimeScale, TrajectoryPoint, gps_to_utc_ns};
 use octant_instruments::FramingEvent;
 use octant_instruments::navigation::{
     NavigationDecoder, NavigationProtocol, NavigationReading, NavigationTime,

@@ -14,8 +14,7 @@
 mod sentence;
 
 use self::sentence::{Said, Sentence, lacks_checksum};
-use super::point::{SECOND_NS, TimeScale, TrajectoryPoint};
-use super::points::{LINE_BYTES_MAX, Points};
+use super::point::{LINE_BYTES_MAX, Points, SECOND_NS, TimeScale, TrajectoryPoint};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
 

@@ -1,4 +1,4 @@
-//! A position with velocity and attitude at a time.
+//! A position with velocity and attitude at a time, and the forms of files that hold such points.
 
 use octant_instruments::GPS_EPOCH_S;
 
@@ -97,6 +97,26 @@ pub struct TrajectoryPoint {
     pub velocity_mps: Option<[f64; 2]>,
     /// Roll, pitch and heading of the case, rad.
     pub attitude_rad: Option<[f64; 3]>,
+}
+
+/// Longest line of text, bytes: a file of another kind may have no line ends and must not fill the memory.
+pub(crate) const LINE_BYTES_MAX: u64 = 64 * 1024;
+
+/// A form of file.
+pub(crate) trait Points: Send {
+    /// Returns the next point; `None` at the end.
+    fn next(&mut self) -> Result<Option<TrajectoryPoint>, String>;
+    /// Place of the last point, as in "line 17".
+    fn place(&self) -> String;
+    fn scale(&self) -> TimeScale;
+    /// Latest time that the file told so far, also of what isn't valid and so no point; `None`: that of the last point.
+    fn heard_ns(&self) -> Option<i64> {
+        None
+    }
+    /// Choice that was made in reading the file, in words that follow its name; `None`: none.
+    fn choice(&self) -> Option<&'static str> {
+        None
+    }
 }
 
 #[cfg(test)]

@@ -3,8 +3,7 @@
 use super::columns::ColumnsReader;
 use super::messages::MessageReader;
 use super::nmea::NmeaReader;
-use super::point::{TimeScale, TrajectoryPoint};
-use super::points::Points;
+use super::point::{Points, TimeScale, TrajectoryPoint};
 use super::rtklib::RtklibReader;
 use super::sbet::SbetReader;
 use octant_scenario::trajectory::TrajectoryFormat;

@@ -2,8 +2,9 @@
 //!
 //! Format: RTKLIB 2.4.2 manual, appendix B.1.
 
-use super::point::{SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS, gps_to_utc_ns};
-use super::points::{LINE_BYTES_MAX, Points};
+use super::point::{
+    LINE_BYTES_MAX, Points, SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS, gps_to_utc_ns,
+};
 use octant_base::decimal::decimal_ns;
 use octant_instruments::GPS_EPOCH_S;
 use std::fs::File;

@@ -4,8 +4,7 @@
 //! don't agree about their axes. Heading counts from the platform's x axis, which the wander angle turns away from
 //! north; they don't agree about its sign either, so an attitude is taken where it is zero.
 
-use super::point::{TimeScale, TrajectoryPoint};
-use super::points::Points;
+use super::point::{Points, TimeScale, TrajectoryPoint};
 use std::fs::File;
 use std::io::{BufReader, Read};
 

@@ -4,7 +4,6 @@ use crate::arguments::read_scenario;
 use crate::attendant::Attendant;
 use crate::failure::Failure;
 use crate::live::Live;
-use crate::power_facts::with_power;
 use crate::progress::Follower;
 use crate::run_folder::{free_name, in_the_way};
 use crate::run_request::{RunRequest, rerun};
@@ -17,6 +16,7 @@ use octant_evidence::{
 };
 use octant_fmu_bind::OpenedFmus;
 use octant_operator::OperatorRecord;
+use octant_recorder::event::PowerRecord;
 use octant_report as report;
 use octant_run::MethodError;
 use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
@@ -28,6 +28,7 @@ use octant_score::junit::junit;
 use octant_trajectory::TrajectoryReader;
 use octant_verdict::Verdict;
 use octant_verdict::equipment::Day;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -411,4 +412,24 @@ pub(crate) fn case(
         require: true,
         ..RunRequest::default()
     })
+}
+
+/// Adds the power of the device to what the manifest tells of the bench.
+pub(crate) fn with_power(bench: Option<Value>, power: Option<&PowerRecord>) -> Option<Value> {
+    let Some(power) = power else { return bench };
+    let mut bench = match bench {
+        Some(Value::Object(bench)) => bench,
+        _ => serde_json::Map::new(),
+    };
+    let end = power.end.map_or("in an unknown state", |end| if end.on { "on" } else { "off" });
+    let text = format!(
+        "{} ({}, {}), switched {} times, left {end}",
+        power.identity,
+        power.port,
+        power.outlet,
+        power.switchings.len()
+    );
+    bench.insert("power of the device".to_owned(), Value::String(text));
+    bench.insert("power".to_owned(), serde_json::to_value(power).unwrap_or_default());
+    Some(Value::Object(bench))
 }

@@ -1,8 +1,7 @@
-//! Renders the page of a kind of fault in Markdown, and its picture.
+//! Renders the page of a kind of fault in Markdown, and its picture; words for the properties of a kind.
 
 use crate::failure::Failure;
-use crate::fault_words::{acts, lasts};
-use octant_faults::catalogue::{Acts, FaultKind};
+use octant_faults::catalogue::{Acts, FaultKind, Lasts};
 use octant_faults::station::World;
 use octant_report::fault_picture::{PictureRuns, PictureStep, PictureWindow, picture as draw};
 use octant_run::side_by_side::{SideBySide, Step, side_by_side};
@@ -157,4 +156,30 @@ pub(super) fn picture(kind: &'static FaultKind) -> Result<String, Failure> {
         "failed to draw {}: its example changes none of the drawn quantities",
         kind.name
     )))
+}
+
+/// Describes where a kind acts.
+pub(crate) fn acts(acts: Acts) -> &'static str {
+    match acts {
+        Acts::Plant => "inside the simulated instrument, before its sensors measure",
+        Acts::Command => "on set points on their way from the core to the turntable",
+        Acts::Samples => "on samples and aiding on their way to the core",
+        Acts::Delivery => "on the delivery of samples: lost, late, in another order",
+        Acts::Unit => "on the unit under test itself",
+        Acts::Wire => "on the wire between the harness and a device",
+        Acts::Host => "on the host that the harness runs on",
+        Acts::Power => "on the supply of a device",
+        _ => "elsewhere",
+    }
+}
+
+/// Describes how long a kind lasts.
+pub(crate) fn lasts(lasts: Lasts) -> &'static str {
+    match lasts {
+        Lasts::Span => "for its duration (by default to the end of the run), then ends",
+        Lasts::Fading => {
+            "for its duration (by default to the end of the run), then fades linearly over its recovery"
+        }
+        Lasts::Instant => "an instant: it takes no duration",
+    }
 }

@@ -1,7 +1,7 @@
 //! `octant faults`: the kinds of faults, and their effects.
 
+use super::fault_page::{acts, lasts};
 use crate::failure::Failure;
-use crate::fault_words::{acts, lasts};
 use crate::given::GivenOptions;
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};

@@ -138,12 +138,6 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(Verdict::Pass)
 }
 
-/// Lists the methods of a scenario.
-fn methods(scenario: &Scenario) -> impl Iterator<Item = Method> {
-    let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
-    std::iter::once(Method::Primary).chain(baseline)
-}
-
 /// Runs the twins without faults, with which requirements on the effects of faults are compared.
 fn twins(
     scenario: &Scenario,
@@ -151,7 +145,8 @@ fn twins(
     control: &Control,
 ) -> Result<Vec<Arc<MethodRun>>, Failure> {
     let clean = scenario.without_faults();
-    methods(scenario)
+    scenario
+        .methods()
         .map(|method| Ok(Arc::new(run(&clean, method, seed, StreamKeeping::Hash, control)?)))
         .collect()
 }
@@ -159,7 +154,7 @@ fn twins(
 /// Runs up to the first fault, which all sets have in common; `None` where a run can't be divided.
 fn stems(scenario: &Scenario, seed: u64, control: &Control) -> Result<Vec<Option<Stem>>, Failure> {
     let plan = |method| Plan::of(scenario, method, seed, StreamKeeping::None, control);
-    methods(scenario).map(|method| Ok(Stem::of(&plan(method))?)).collect()
+    scenario.methods().map(|method| Ok(Stem::of(&plan(method))?)).collect()
 }
 
 /// Results that the runs of all sets need.
@@ -202,7 +197,7 @@ fn outcome(
         return Ok(SetOutcome::Impossible);
     }
     let mut runs = Vec::with_capacity(known.twins.len());
-    for ((method, twin), stem) in methods(scenario).zip(&known.twins).zip(&known.stems) {
+    for ((method, twin), stem) in scenario.methods().zip(&known.twins).zip(&known.stems) {
         let plan = Plan::of(&some, method, seed, StreamKeeping::None, control);
         let mut run = match stem {
             Some(stem) if !set.is_empty() => uncancelled(stem.run(&plan, |i| set.contains(&i))?)?,

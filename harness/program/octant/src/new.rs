@@ -1,10 +1,9 @@
 //! `octant new`: a commented scenario, from flags and from questions on a terminal.
 
 use crate::failure::Failure;
-use crate::grades::InstrumentGrade;
 use crate::terminal::{print, write};
 use clap::{Args, ValueEnum};
-use octant_scenario::{FLICKER, Scenario};
+use octant_scenario::{FLICKER, GRADES, GradeSheet, Scenario};
 use octant_verdict::Verdict;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -260,4 +259,28 @@ pub fn scenario(answers: &NewAnswers) -> String {
         }
     }
     text
+}
+
+/// Grade of an instrument, in the order of [`GRADES`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum InstrumentGrade {
+    /// Laser gyros, the reference instrument of the method's paper.
+    #[value(name = "table-1")]
+    Table1,
+    /// Laser gyros, navigation grade: Honeywell HG9900.
+    NavigationLaser,
+    /// Fibre-optic gyros, navigation grade: the inertial grade of Yazdi, Ayazi and Najafi.
+    NavigationFibreOptic,
+    /// Fibre-optic gyros, tactical grade: Northrop Grumman LN-200.
+    TacticalFibreOptic,
+    /// MEMS gyros, tactical grade: Sensonor STIM300.
+    TacticalMems,
+}
+
+impl InstrumentGrade {
+    /// Data of this grade.
+    #[must_use]
+    pub fn sheet(self) -> &'static GradeSheet {
+        GRADES[self as usize]
+    }
 }

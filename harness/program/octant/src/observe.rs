@@ -97,10 +97,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         return protection::command(given, *json);
     }
     let scenario = load(given, &[])?;
-    let methods = std::iter::once(Method::Primary)
-        .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
-    let observations =
-        methods.map(|method| observe(&scenario, method)).collect::<Result<Vec<_>, _>>()?;
+    let observations = (scenario.methods())
+        .map(|method| observe(&scenario, method))
+        .collect::<Result<Vec<_>, _>>()?;
     if *json {
         print_json(&observations)?;
     } else {

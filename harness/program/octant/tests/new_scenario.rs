@@ -2,8 +2,7 @@
 
 use crate::common::program::{ended, octant_in};
 use clap::ValueEnum;
-use octant::grades::InstrumentGrade;
-use octant::new::{NewArguments, NewMotion, answers, scenario};
+use octant::new::{InstrumentGrade, NewArguments, NewMotion, answers, scenario};
 use octant_scenario::{GRADES, Scenario};
 use std::path::{Path, PathBuf};
 

@@ -5,6 +5,7 @@
 
 use super::discrepancy::Discrepancy;
 use octant_base::failing::{Failing, FailureKind};
+use octant_toml_tree::error::{Place, Problem};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -212,8 +213,11 @@ fn entry(found: &Discrepancy) -> String {
 }
 
 fn parse(text: &str) -> Result<Vec<DispositionEntry>, String> {
-    let wrong = |(line, message): (Option<usize>, String)| {
-        let place = line.map_or_else(String::new, |line| format!("line {line}: "));
+    let wrong = |Problem { place, message, .. }: Problem| {
+        let place = match place {
+            Place::File { line, .. } => format!("line {line}: "),
+            _ => String::new(),
+        };
         format!("{place}{}", message.lines().collect::<Vec<_>>().join(", "))
     };
     let version: Version = octant_toml_tree::read_as(text).map_err(wrong)?;

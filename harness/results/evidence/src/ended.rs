@@ -4,9 +4,9 @@
 //! these steps, so that a summary alone is no result.
 
 use super::error::ManifestError;
+use super::files::MANIFEST;
 use super::folder::PARTIAL;
 use super::manifest::Manifest;
-use super::names::MANIFEST;
 use super::statements::SUMMARY;
 use octant_score::judge::derive;
 use octant_score::summary::Summary;

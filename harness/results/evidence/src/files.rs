@@ -5,7 +5,6 @@
 //! anything, and a link leads to content elsewhere.
 
 use super::error::ManifestError;
-use super::names::{LOCK, MANIFEST, SECOND, SIGNATURE};
 pub(crate) use octant_base::regular::open;
 pub use octant_base::regular::read;
 use octant_base::regular::what;
@@ -14,6 +13,15 @@ use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read};
 use std::path::Path;
+
+/// Name of the manifest in a run folder.
+pub const MANIFEST: &str = "manifest.json";
+/// Name of the signature beside a manifest.
+pub const SIGNATURE: &str = "manifest.json.minisig";
+/// Name of the second person's signature beside the dispositions of a campaign.
+pub const SECOND: &str = "dispositions.toml.minisig";
+/// Lock file, held while a run is written; removed before the folder gets its name.
+pub const LOCK: &str = ".writing";
 
 /// A file with its hashes.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

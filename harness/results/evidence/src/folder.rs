@@ -5,10 +5,10 @@
 //! killed.
 
 pub use super::error::FolderError;
-pub use super::names::LOCK;
+pub use super::files::LOCK;
 
+use super::files::MANIFEST;
 use super::leftover::{self, Leftover, system};
-use super::names::MANIFEST;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};

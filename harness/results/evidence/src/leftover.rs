@@ -7,7 +7,7 @@
 //! to `RUN.replaced` and removed a partial folder in place.
 
 use super::error::FolderError;
-use super::names::{LOCK, MANIFEST};
+use super::files::{LOCK, MANIFEST};
 use std::ffi::OsString;
 use std::fs;
 use std::io;

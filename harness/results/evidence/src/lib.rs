@@ -3,7 +3,6 @@
 
 pub mod attestation;
 pub mod build;
-mod difference;
 pub mod discrepancy;
 pub mod disposition;
 pub mod ended;
@@ -16,7 +15,6 @@ mod host;
 mod inputs;
 pub mod leftover;
 pub mod manifest;
-mod names;
 pub mod signature;
 pub mod statements;
 

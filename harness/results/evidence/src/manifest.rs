@@ -1,12 +1,11 @@
 //! `manifest.json`: origin of a run, versions, and the hashes of everything in its folder.
 
-pub use super::difference::FolderDifference;
 pub use super::error::ManifestError;
 pub use super::facts::{CampaignFacts, FmuFacts, RunFacts};
-pub use super::files::FileHash;
+pub use super::files::{FileHash, MANIFEST as FILE_NAME};
 pub use super::host::Machine;
-pub use super::names::MANIFEST as FILE_NAME;
 
+use super::files::LOCK;
 use super::files::{self, Entries, system};
 use super::inputs::InputFacts;
 use octant_base::printable::printable;
@@ -390,4 +389,49 @@ pub fn shell_line(words: &[String]) -> String {
         })
         .collect();
     quoted.join(" ")
+}
+
+/// A difference between a folder and its manifest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FolderDifference {
+    /// The manifest names a file that isn't there.
+    Missing(String),
+    /// A file isn't named in the manifest.
+    Unknown(String),
+    /// A file has another content.
+    Changed(String),
+    /// An empty folder isn't named in the manifest.
+    EmptyFolder(String),
+    /// An entry is neither a file nor a folder; the kind stands beside the path.
+    NoFile(String, &'static str),
+    /// The lock of a run in progress is there.
+    Locked,
+    /// Manifest and journal differ in the answers of a person.
+    Answers,
+}
+
+impl std::fmt::Display for FolderDifference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Missing(path) => write!(f, "{path} is missing"),
+            Self::Unknown(path) => write!(f, "{path} was added: the manifest doesn't name it"),
+            Self::Changed(path) => write!(f, "{path} was changed"),
+            Self::EmptyFolder(path) => {
+                write!(f, "{path}/ was added: an empty folder that the manifest doesn't name")
+            }
+            Self::NoFile(path, what) => {
+                write!(f, "{path} is {what}: evidence is regular files and folders")
+            }
+            Self::Locked => {
+                write!(f, "{LOCK} is there: the run goes on, or a kill left it")
+            }
+            Self::Answers => {
+                write!(
+                    f,
+                    "the manifest's answers of the operator aren't those of {}",
+                    journal::FILE_NAME
+                )
+            }
+        }
+    }
 }

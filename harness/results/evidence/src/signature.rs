@@ -5,10 +5,10 @@
 //! and no part of it is written.
 
 pub use super::error::SignatureError;
-pub use super::names::{SECOND, SIGNATURE as FILE_NAME};
+pub use super::files::{SECOND, SIGNATURE as FILE_NAME};
 pub use octant_base::child::{KEY, PASSWORD};
 
-use super::{files, names};
+use super::files;
 use ct_codecs::{Base64, Decoder};
 use minisign::{PublicKey, SecretKey, SecretKeyBox, SignatureBox};
 use std::path::Path;
@@ -127,7 +127,7 @@ impl SigningKey {
         let failed =
             |reason: String| SignatureError::Sign { path: dispositions.to_owned(), reason };
         let own = PublicKey::from_secret_key(&self.secret).map_err(|e| failed(e.to_string()))?;
-        let manifest = dispositions.with_file_name(names::MANIFEST);
+        let manifest = dispositions.with_file_name(files::MANIFEST);
         // Compared by the key itself, not by its id, which its owner can choose.
         if verify(&manifest, &own.to_base64()).is_ok() {
             return Err(failed(format!(

@@ -8,7 +8,6 @@
 //! - [`rows`] joins the messages of an epoch into rows, [`resample`] chooses those of a coarser grid
 //! - one file a format: `csv`, `parquet`, `mat`, `kml`, `rosbag`
 
-mod attitude;
 pub mod columns;
 mod csv;
 pub mod error;

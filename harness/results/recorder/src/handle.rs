@@ -7,9 +7,8 @@
 //! slow run, too, is written to the file; checking for that costs the loop one relaxed load.
 
 use super::block::Block;
-use super::digest::Digest;
-use super::grid::next_on_grid;
-use super::summary::RecorderSummary;
+use super::digest::{Digest, RecorderSummary};
+use super::published::next_on_grid;
 use super::trouble::{Disk, RecorderTrouble};
 use super::writer::RecordingWriter;
 use super::{EpochFrame, Event, Extra, FLUSH_INTERVAL, RecorderError, RecorderOptions};

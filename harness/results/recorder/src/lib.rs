@@ -11,7 +11,6 @@ pub mod concluded;
 mod digest;
 pub mod event;
 pub mod further;
-mod grid;
 mod handle;
 mod item;
 pub mod message;
@@ -20,17 +19,16 @@ pub mod reader;
 pub mod records;
 mod sink;
 mod stream_hash;
-mod summary;
 mod topic;
 mod trouble;
 mod writer;
 
 pub use altered::AlteredStreams;
+pub use digest::RecorderSummary;
 pub use event::Event;
 pub use further::Publishing;
 pub use handle::Recorder;
 pub use stream_hash::StreamHash;
-pub use summary::RecorderSummary;
 pub use trouble::RecorderTrouble;
 
 use octant_sample::Epoch;

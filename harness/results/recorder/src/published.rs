@@ -1,7 +1,6 @@
 //! Further topics in the file: when they are due, and their messages on their channels.
 
 use super::further::{FurtherMessages, Publisher, Publishing};
-use super::grid::next_on_grid;
 use super::item::Item;
 use super::sink::Container;
 use mcap::records::MessageHeader;
@@ -95,4 +94,10 @@ impl Published {
         self.messages.clear();
         written.map(|()| !is_empty)
     }
+}
+
+/// First multiple of the period after a time.
+pub(super) fn next_on_grid(time_ns: u64, period_ns: u64) -> u64 {
+    let period_ns = period_ns.max(1);
+    (time_ns / period_ns).saturating_add(1).saturating_mul(period_ns)
 }

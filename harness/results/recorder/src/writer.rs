@@ -16,10 +16,9 @@
 //! - After a failed write nothing more is written; data before the failure is readable.
 
 use super::block::Block;
-use super::grid::next_on_grid;
 use super::item::Item;
 use super::message::{self, Topic};
-use super::published::Published;
+use super::published::{Published, next_on_grid};
 use super::sink::{Container, Sink};
 use super::{
     Event, FLUSH_INTERVAL, FORMAT_VERSION, MessageCounts, Policy, RecorderError, RecorderOptions,

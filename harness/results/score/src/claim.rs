@@ -1,6 +1,6 @@
 //! The published claim, and the verdict of a comparison on it.
 
-use super::ensemble::Improvement;
+use octant_statistics::paired::Improvement;
 use serde::{Deserialize, Serialize};
 
 /// Improvement of the published claim, 1.

@@ -1,13 +1,12 @@
 //! Comparison of two methods on the same instruments with the same noise: `octant compare`.
 
 pub use super::claim::{CLAIM, Claim, interval, percent};
-use super::ensemble::{Improvement, improvement, rms};
 use super::floor::MaximumFloor;
 pub use super::maxima::{Maxima, Measure};
 use octant_statistics::convergence::pass;
-use octant_statistics::paired::PassPairs;
+use octant_statistics::paired::{Improvement, PassPairs, improvement};
 use octant_statistics::power;
-use octant_statistics::sample::ConfidenceInterval;
+use octant_statistics::sample::{ConfidenceInterval, rms};
 use serde::{Deserialize, Serialize};
 
 /// Version of the schema of `compare.json`.

@@ -278,11 +278,11 @@ fn stays_broken(summary: &Summary, result: &RequirementResult) -> bool {
 /// Worst verdict of a judged summary without its requirements: of a refused calibration, a fault that
 /// never fired, a finding, a shortfall, or missing requirements.
 #[must_use]
-pub fn besides(summary: &Summary) -> Verdict {
+pub fn except_requirements(summary: &Summary) -> Verdict {
     let (unit, bench) = sides(summary, &mut std::iter::empty());
     let worst = |told: &mut dyn Iterator<Item = Verdict>| told.fold(Verdict::Pass, Verdict::worst);
     let unit = worst(&mut unit.iter().map(|told| told.0));
     let bench = worst(&mut bench.iter().map(|told| told.0));
-    let besides = if unit == Verdict::Fail { unit } else { unit.worst(bench) };
-    if summary.requirements.is_empty() { besides.worst(Verdict::Inconclusive) } else { besides }
+    let worst = if unit == Verdict::Fail { unit } else { unit.worst(bench) };
+    if summary.requirements.is_empty() { worst.worst(Verdict::Inconclusive) } else { worst }
 }

@@ -5,7 +5,7 @@
 //!   time with their σ
 //! - [`parameters`] compares estimates with truth, normalized by their σ
 //! - [`mod@reference`] and [`floor`] give the physical limits of the scores
-//! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
+//! - [`compare`] has the statistics of two methods in pairs
 //! - [`health`] counts the reports of the core, [`allan`] has the noise of the sensors at rest
 //! - [`summary`] is `summary.json`, [`work`] compares the work planned with the work done
 //! - [`verdict`] compares a measure with its limit, [`judge`] derives the verdict of a summary,
@@ -22,7 +22,6 @@ mod claim;
 pub mod compare;
 pub mod counterfactual;
 pub mod drift;
-pub mod ensemble;
 pub mod equipment;
 mod finding;
 pub mod floor;

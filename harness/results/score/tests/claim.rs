@@ -1,7 +1,7 @@
 //! The verdict on the published claim.
 
 use octant_score::compare::Claim;
-use octant_score::ensemble::Improvement;
+use octant_statistics::paired::Improvement;
 
 #[test]
 fn an_end_of_the_interval_on_its_edge_shows_nothing_more() {

@@ -5,10 +5,10 @@ use octant_earth::units::{
     ARCMIN, ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, DEG_PER_SQRT_HOUR, MICRO_G,
 };
 use octant_score::drift::{DriftError, DriftSample, DriftScorer};
-use octant_score::ensemble;
 use octant_score::floor::Floor;
 use octant_score::reference::{isotropic_g_sigma, vertical_drift};
 use octant_score::summary::{HeightChannel, NavigationScore};
+use octant_statistics::{paired, position, proportion};
 use std::f64::consts::PI;
 
 const LATITUDE: f64 = 30.5 * DEG;
@@ -284,14 +284,14 @@ fn the_covariance_of_the_floor_is_the_sum_of_its_impulse_responses() {
 
 #[test]
 fn zero_failures_in_59_runs_show_95_percent_at_95_percent() {
-    assert!(ensemble::success_lower_bound(0, 59, 0.95) >= 0.95);
-    assert!(ensemble::success_lower_bound(0, 58, 0.95) < 0.95);
+    assert!(proportion::success_lower_bound(0, 59, 0.95) >= 0.95);
+    assert!(proportion::success_lower_bound(0, 58, 0.95) < 0.95);
     // No failure: (1 − confidence)^(1/n). One of ten: the beta quantile, 0.6058 (tables).
-    assert_near(ensemble::success_lower_bound(0, 20, 0.9), 0.1f64.powf(0.05), 1e-9);
-    assert_near(ensemble::success_lower_bound(1, 10, 0.95), 0.6058, 1e-4);
-    assert_near(ensemble::success_upper_bound(10, 10, 0.95), 1.0 - 0.05f64.powf(0.1), 1e-9);
-    assert_eq!(ensemble::success_lower_bound(3, 3, 0.95), 0.0);
-    assert_eq!(ensemble::success_upper_bound(0, 10, 0.95), 1.0);
+    assert_near(proportion::success_lower_bound(0, 20, 0.9), 0.1f64.powf(0.05), 1e-9);
+    assert_near(proportion::success_lower_bound(1, 10, 0.95), 0.6058, 1e-4);
+    assert_near(proportion::success_upper_bound(10, 10, 0.95), 1.0 - 0.05f64.powf(0.1), 1e-9);
+    assert_eq!(proportion::success_lower_bound(3, 3, 0.95), 0.0);
+    assert_eq!(proportion::success_upper_bound(0, 10, 0.95), 1.0);
 }
 
 #[test]
@@ -299,29 +299,29 @@ fn position_statistics_of_a_known_ensemble() {
     // 3-4-5 triangles of growing size: radial errors 5, 10, … 100.
     let errors: Vec<[f64; 2]> =
         (1..=20).map(|k| [3.0 * f64::from(k), 4.0 * f64::from(k)]).collect();
-    let s = ensemble::position_statistics(&errors).unwrap();
+    let s = position::position_statistics(&errors).unwrap();
     // Mean of k² for 20 is 143.5.
     assert_near(s.drms, 5.0 * 143.5f64.sqrt(), 1e-9);
     assert_near(s.cep50_gaussian, 0.5887 * 7.0 * 143.5f64.sqrt(), 1e-9);
     assert_near(s.cep50_empirical, 52.5, 1e-12);
     assert_near(s.r95, 95.25, 1e-12);
-    assert_eq!(ensemble::position_statistics(&[]), None);
+    assert_eq!(position::position_statistics(&[]), None);
 }
 
 #[test]
 fn an_improvement_is_of_pairs_and_inside_its_interval() {
     let first: Vec<f64> = (0..20).map(|k| 1.0 + 0.1 * f64::from(k % 7)).collect();
     let half: Vec<f64> = first.iter().map(|x| 0.5 * x).collect();
-    let i = ensemble::improvement(&first, &half, 0.9).unwrap();
+    let i = paired::improvement(&first, &half, 0.9).unwrap();
     assert_near(i.value, 0.5, 1e-12);
     // Pairs in a fixed ratio have no random part, because the comparison is paired.
     assert_near(i.low, 0.5, 1e-12);
     assert_near(i.high, 0.5, 1e-12);
     let noisy: Vec<f64> = (0..20).map(|k| 0.4 + 0.3 * f64::from((k * 5) % 11) / 10.0).collect();
-    let a = ensemble::improvement(&first, &noisy, 0.9).unwrap();
+    let a = paired::improvement(&first, &noisy, 0.9).unwrap();
     assert!(a.low < a.value && a.value < a.high, "{a:?}");
-    let wider = ensemble::improvement(&first, &noisy, 0.99).unwrap();
+    let wider = paired::improvement(&first, &noisy, 0.99).unwrap();
     assert!(wider.low < a.low && a.high < wider.high, "{a:?} {wider:?}");
-    assert_eq!(ensemble::improvement(&first, &noisy[1..], 0.9), None);
-    assert_eq!(ensemble::improvement(&[0.0, 0.0], &[1.0, 1.0], 0.9), None);
+    assert_eq!(paired::improvement(&first, &noisy[1..], 0.9), None);
+    assert_eq!(paired::improvement(&[0.0, 0.0], &[1.0, 1.0], 0.9), None);
 }

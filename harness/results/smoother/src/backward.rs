@@ -16,8 +16,7 @@
 //! state i just after k gives it the mean N e a. rᵢ/√Nᵢᵢ is therefore the likelihood ratio of such a jump (de Jong
 //! and Penzer, 1998), whatever the filter believes of P.
 
-use crate::measured::{Measured, Node};
-use crate::refusal::SmootherError;
+use super::store::{Measured, Node, StoreError};
 use crate::store::Store;
 use crate::{StateVector, States};
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -196,4 +195,36 @@ pub fn smooth(store: &mut Store) -> Result<SmoothedCalibration, SmootherError> {
     }
     let mean_nis = at.nis / store.len() as f64;
     Ok(SmoothedCalibration { nodes, mean_nis, covariances })
+}
+
+/// Reasons why a calibration can't be smoothed.
+#[derive(Debug, thiserror::Error)]
+pub enum SmootherError {
+    /// It has no filter.
+    #[error("smooth: found estimator = {found:?}, expected \"kalman\"")]
+    NoFilter {
+        /// Name of the estimator; none if there is no calibration.
+        found: &'static str,
+    },
+    /// The filter has states that the smoother doesn't carry.
+    #[error(
+        "smooth: found a filter with {found}, expected the 39 states alone: the smoother doesn't carry others"
+    )]
+    OtherStates {
+        /// The states.
+        found: &'static str,
+    },
+    /// The stream has too little of a calibration.
+    #[error(
+        "smooth: found {found} measurements after the last recovery, expected at least {expected}"
+    )]
+    TooShort {
+        /// Measurements that were used.
+        found: usize,
+        /// Least number.
+        expected: usize,
+    },
+    /// The history can't be kept.
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }

@@ -18,8 +18,8 @@
 //! Parameters that are hardly known better than by their prior at a node aren't tested there: a prior that is too narrow is
 //! no change.
 
+use super::store::Row;
 use crate::backward::{Smoothed, SmoothedCalibration};
-use crate::measured::Row;
 use crate::quadratic::probability_above;
 use nalgebra::{SMatrix, SymmetricEigen};
 use octant_calibration::covariance::PARAMETERS;

@@ -1,8 +1,8 @@
 //! What a core's filter did, measurement by measurement.
 
+use super::backward::SmootherError;
+use super::store::{Measured, Node, Row};
 use crate::backward::{SmoothedCalibration, smooth};
-use crate::measured::{Measured, Node, Row};
-use crate::refusal::SmootherError;
 use crate::store::Store;
 use octant_calibration::Core;
 use octant_calibration::config::{Calibration, CoreConfig, Estimator, Kalman, SwayNoise};

@@ -15,9 +15,7 @@
 pub mod backward;
 pub mod constancy;
 pub mod history;
-pub mod measured;
 pub mod quadratic;
-pub mod refusal;
 pub mod store;
 
 use nalgebra::{SMatrix, SVector};

@@ -3,8 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 use octant_calibration::covariance::{DV, MOVING, PARAMETERS, STATE_COUNT};
 use octant_random::stream::Triad;
-use octant_smoother::measured::{Measured, Node, Row};
-use octant_smoother::store::Store;
+use octant_smoother::store::{Measured, Node, Row, Store};
 use octant_smoother::{StateVector, States};
 
 /// First of the measured states.

@@ -8,8 +8,9 @@ use octant_toml_tree::{Node, Table, Value, controls_of_argument, parse_argument}
 /// Applies a `--set KEY=VALUE` to a document: KEY is a dotted path, VALUE is TOML or a text without
 /// quotes.
 pub fn override_set(document: &mut Table, argument: &str) -> Result<(), Problem> {
+    let whole = format!("--set {argument}");
     let problem = |path: &str, message: String| Problem {
-        place: Place::Argument(argument.to_owned()),
+        place: Place::Argument(whole.clone()),
         path: path.to_owned(),
         message,
     };
@@ -18,14 +19,14 @@ pub fn override_set(document: &mut Table, argument: &str) -> Result<(), Problem>
         return Err(problem("", message));
     };
     let path = path.trim();
-    let node = parse_argument(value, argument);
+    let node = parse_argument(value, &whole);
     if let Some(problem) = controls_of_argument(path, &node) {
         return Err(problem);
     }
     if let Some((id, key)) = path.strip_prefix("faults.").and_then(|rest| rest.split_once('.')) {
         // The keys of a fault depend on its kind: they are checked with those of the file.
         let fault = fault_of(document, id).map_err(|message| problem(path, message))?;
-        fault.set_at(key, parse_argument(value, argument));
+        fault.set_at(key, parse_argument(value, &whole));
         return Ok(());
     }
     let mut section = SCENARIO;
@@ -38,7 +39,7 @@ pub fn override_set(document: &mut Table, argument: &str) -> Result<(), Problem>
         if names.peek().is_some() {
             if matches!(key.kind, Kind::Settings) {
                 // The rest of the path is the name of a variable.
-                document.set_at(path, parse_argument(value, argument));
+                document.set_at(path, parse_argument(value, &whole));
                 return Ok(());
             }
             section = key.kind.section().ok_or_else(|| {
@@ -59,7 +60,7 @@ pub fn override_set(document: &mut Table, argument: &str) -> Result<(), Problem>
             document.remove_at(&format!("{parent}.{name}"));
         }
     }
-    document.set_at(path, parse_argument(value, argument));
+    document.set_at(path, parse_argument(value, &whole));
     Ok(())
 }
 
@@ -87,7 +88,8 @@ fn fault_of<'a>(document: &'a mut Table, id: &str) -> Result<&'a mut Table, Stri
 
 /// Applies a `--fire ID=TIME`: adds the time to those of a manual trigger.
 pub(crate) fn fire(document: &mut Table, argument: &str) -> Result<(), Problem> {
-    let place = Place::Fire(argument.to_owned());
+    let whole = format!("--fire {argument}");
+    let place = Place::Argument(whole.clone());
     let problem = |message: String| Problem { place: place.clone(), path: String::new(), message };
     let Some((id, time)) = argument.rsplit_once('=') else {
         return Err(problem("expected ID=TIME, such as spike-1=\"5050 s\"".to_owned()));
@@ -99,7 +101,7 @@ pub(crate) fn fire(document: &mut Table, argument: &str) -> Result<(), Problem> 
     if trigger.get("manual").is_none() {
         return Err(problem(format!("the trigger of fault {id:?} is not manual")));
     }
-    let node = parse_argument(time, argument);
+    let node = parse_argument(time, &whole);
     let node = Node { place: place.clone(), ..node };
     match trigger.get_mut("fire") {
         Some(Node { value: Value::Array(times), .. }) => times.push(node),

@@ -20,7 +20,7 @@
 //! uniform = [1, 1000]
 //! ```
 
-use crate::error::{Problem, ScenarioError};
+use crate::error::{FileProblems, Problem};
 pub use crate::keys::Design;
 use crate::keys::{
     At, CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, Keys, LimitsKeys, MemberKeys,
@@ -181,9 +181,9 @@ impl Campaign {
     ///
     /// # Errors
     /// If the file can't be read, isn't TOML, or isn't a campaign: every problem with its place.
-    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+    pub fn load(path: &Path) -> Result<Self, FileProblems> {
         let file = path.display().to_string();
-        let text = ScenarioError::text_of(path)?;
+        let text = FileProblems::text_of(path)?;
         Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
@@ -191,7 +191,7 @@ impl Campaign {
     ///
     /// # Errors
     /// If it isn't TOML or isn't a campaign: every problem with its place.
-    pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, ScenarioError> {
+    pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, FileProblems> {
         other_format::refuse(text, file, "a campaign")?;
         let read = |keys| read(keys, folder);
         CampaignKeys::parse(text, file, |_, _| (), read)

@@ -30,7 +30,7 @@ pub mod trajectory;
 mod write;
 
 pub use arguments::override_set;
-pub use error::{Place, Problem, ScenarioError};
+pub use error::{FileProblems, Place, Problem};
 pub use files::FilePlaces;
 pub use keys::{SCHEMA, fault_dimension};
 pub use model::{

@@ -2,7 +2,7 @@
 
 use super::arguments::{fire, override_set};
 use super::complete::complete;
-use super::error::{Place, ScenarioError};
+use super::error::{FileProblems, Place};
 use super::files::{FilePlaces, put_places};
 use super::model::Scenario;
 use super::{derive, keys, other_format, read};
@@ -13,7 +13,7 @@ impl Scenario {
     ///
     /// # Errors
     /// If the file can't be read, isn't TOML, or is not a scenario: every problem with its place.
-    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, FileProblems> {
         Self::load_fired(path, overrides, &[])
     }
 
@@ -27,9 +27,9 @@ impl Scenario {
         overrides: &[String],
         fires: &[String],
         places: &FilePlaces,
-    ) -> Result<Self, ScenarioError> {
+    ) -> Result<Self, FileProblems> {
         let file = path.display().to_string();
-        let text = ScenarioError::text_of(path)?;
+        let text = FileProblems::text_of(path)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         parse(&text, &file, folder, [overrides, fires], places)
     }
@@ -43,7 +43,7 @@ impl Scenario {
         path: &Path,
         overrides: &[String],
         fires: &[String],
-    ) -> Result<Self, ScenarioError> {
+    ) -> Result<Self, FileProblems> {
         Self::load_placed(path, overrides, fires, &FilePlaces::default())
     }
 
@@ -57,7 +57,7 @@ impl Scenario {
         file: &str,
         folder: &Path,
         overrides: &[String],
-    ) -> Result<Self, ScenarioError> {
+    ) -> Result<Self, FileProblems> {
         Self::parse_fired(text, file, folder, overrides, &[])
     }
 
@@ -72,7 +72,7 @@ impl Scenario {
         folder: &Path,
         overrides: &[String],
         fires: &[String],
-    ) -> Result<Self, ScenarioError> {
+    ) -> Result<Self, FileProblems> {
         parse(text, file, folder, [overrides, fires], &FilePlaces::default())
     }
 }
@@ -84,9 +84,9 @@ fn parse(
     folder: &Path,
     arguments: [&[String]; 2],
     places: &FilePlaces,
-) -> Result<Scenario, ScenarioError> {
+) -> Result<Scenario, FileProblems> {
     other_format::refuse(text, file, "a scenario")?;
-    let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+    let with_file = |problems| FileProblems { file: file.to_owned(), problems };
     let mut document = octant_toml_tree::parse(text).map_err(with_file)?;
     let mut problems = Vec::new();
     let [overrides, fires] = arguments;

@@ -1,7 +1,7 @@
 //! Files of another format than the one that a command reads: a scenario given as a campaign, and the
 //! like.
 
-use super::error::{Place, Problem, ScenarioError};
+use super::error::{FileProblems, Place, Problem};
 use super::keys::{CampaignKeys, Keys, SCENARIO, Section, SuiteKeys};
 use octant_toml_tree::Table;
 
@@ -23,7 +23,7 @@ fn formats() -> [(&'static str, &'static Section, &'static str); 3] {
 ///
 /// # Errors
 /// One problem that names both formats and the command to use.
-pub(crate) fn refuse(text: &str, file: &str, expected: &str) -> Result<(), ScenarioError> {
+pub(crate) fn refuse(text: &str, file: &str, expected: &str) -> Result<(), FileProblems> {
     // A text that isn't TOML is reported by the reader of the format.
     let Ok(document) = octant_toml_tree::parse(text) else { return Ok(()) };
     let Some((found, command)) = other(&document, expected) else { return Ok(()) };
@@ -33,7 +33,7 @@ pub(crate) fn refuse(text: &str, file: &str, expected: &str) -> Result<(), Scena
         path: String::new(),
         message: format!("found {found}, expected {expected}: {command}"),
     };
-    Err(ScenarioError { file: file.to_owned(), problems: vec![problem] })
+    Err(FileProblems { file: file.to_owned(), problems: vec![problem] })
 }
 
 /// Name and command of the other format that a document has.

@@ -207,13 +207,14 @@ fn set(value: &Value, at: &EntryPlace) -> Result<Set, Problem> {
 /// # Errors
 /// If it has no `=`, or the value can't be a setting.
 pub fn setting_argument(argument: &str) -> Result<Setting, Problem> {
-    let place = Place::Argument(argument.to_owned());
+    let whole = format!("--set {argument}");
+    let place = Place::Argument(whole.clone());
     let Some((name, value)) = argument.split_once('=') else {
         let message = "expected NAME=VALUE, such as ship.mass=3.2e6".to_owned();
         return Err(Problem { place, path: String::new(), message });
     };
     let mut table = Table::default();
-    table.set(name.trim(), parse_argument(value, argument));
+    table.set(name.trim(), parse_argument(value, &whole));
     let mut all = settings(&table, "")?;
     match (all.pop(), all.is_empty()) {
         (Some(setting), true) => Ok(setting),

@@ -13,7 +13,7 @@
 //! because = "refused"
 //! ```
 
-use super::error::{Problem, ScenarioError};
+use super::error::{FileProblems, Problem};
 use super::keys::{CaseKeys, Keys, SuiteKeys};
 use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
@@ -41,9 +41,9 @@ impl Suite {
     ///
     /// # Errors
     /// If the file can't be read, isn't TOML, or is not a suite: every problem with its place.
-    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+    pub fn load(path: &Path) -> Result<Self, FileProblems> {
         let file = path.display().to_string();
-        let text = ScenarioError::text_of(path)?;
+        let text = FileProblems::text_of(path)?;
         Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
@@ -51,7 +51,7 @@ impl Suite {
     ///
     /// # Errors
     /// If it isn't TOML or not a suite: every problem with its place.
-    pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, ScenarioError> {
+    pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, FileProblems> {
         crate::other_format::refuse(text, file, "a suite")?;
         SuiteKeys::parse(text, file, |_, _| (), |keys| cases(keys, folder))
     }

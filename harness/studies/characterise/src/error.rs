@@ -1,6 +1,6 @@
 //! Reasons why a recording can't be characterised.
 
-use octant_scenario::ScenarioError;
+use octant_scenario::FileProblems;
 use octant_source::SourceError;
 
 /// Reasons why a recording can't be characterised.
@@ -8,7 +8,7 @@ use octant_source::SourceError;
 pub enum CharacteriseError {
     /// The scenario that describes the recording is wrong.
     #[error(transparent)]
-    Scenario(#[from] ScenarioError),
+    Scenario(#[from] FileProblems),
     /// The recording can't be read.
     #[error("failed to {0}")]
     Source(#[from] SourceError),

@@ -17,7 +17,7 @@
 //! convex set more often (T. W. Anderson, *The integral of a symmetric unimodal function over a symmetric
 //! convex set*, Proceedings of the American Mathematical Society 6, 1955), and "no error above x" is one.
 
-use crate::isotropic::DIAGONAL;
+use super::judge::DIAGONAL;
 use crate::judge::Judge;
 use crate::largest::Sampled;
 use crate::platform::KNOWN_AT_START;
@@ -26,7 +26,7 @@ use octant_calibration::covariance::DV;
 use octant_calibration::schedule::DoesNotFit;
 use serde::Serialize;
 
-pub use crate::isotropic::known_but_isotropic;
+pub use super::judge::known_but_isotropic;
 
 /// A bound with its certificate.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -26,7 +26,6 @@ pub mod continuous;
 pub mod contribution;
 mod dwell;
 pub mod evaluate;
-mod isotropic;
 pub mod judge;
 pub mod largest;
 pub mod lead_in;

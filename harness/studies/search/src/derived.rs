@@ -1,10 +1,10 @@
 //! The space that the catalogue of faults gives: every kind, around the values of its example.
 
 use crate::space::{Form, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, Space};
-use crate::toml_text::written;
 use octant_faults::catalogue::{Acts, FaultKind, Lasts, ParameterBounds, Takes};
 use octant_faults::kinds;
 use octant_scenario::{fault_dimension, fault_example, quantity_of};
+use octant_toml_tree::{Entry, Node, Value, number};
 
 /// Ratio of the ends of a range to the value of the example.
 const AROUND: f64 = 1000.0;
@@ -42,7 +42,7 @@ pub fn derived(kinds: &[&'static FaultKind], times: RunTimes) -> Space {
 fn forms_of(kind: &'static FaultKind, times: RunTimes) -> Vec<Form> {
     let example = fault_example(kind.name).unwrap_or_default();
     let example = example.strip_prefix("[[faults]]\n").unwrap_or(&example);
-    let Ok(example) = example.parse::<toml::Table>() else { return Vec::new() };
+    let Ok(example) = octant_toml_tree::read(example) else { return Vec::new() };
     let dimensions = |parameter: &octant_faults::catalogue::FaultParameter| match parameter.takes {
         Takes::Quantity(all, _) => all.len(),
         _ => 1,
@@ -52,14 +52,14 @@ fn forms_of(kind: &'static FaultKind, times: RunTimes) -> Vec<Form> {
     let triads = most.max(if has_channels { 2 } else { 1 });
     // A vector along one axis is tried along each.
     let has_axis = kind.parameters.iter().any(|p| {
-        let vector = example.get(p.name).and_then(|value| vector(value, 0));
+        let vector = example.get(p.name).and_then(|node| vector(&node.value, 0));
         vector.is_some_and(|vector| non_zero(&vector) == 1)
     });
     let turns = if has_axis { 3 } else { 1 };
     (0..triads * turns)
         .map(|form| (form / turns, form % turns))
         .map(|(triad, turn)| {
-            let given = |name: &str| example.get(name);
+            let given = |name: &str| example.get(name).map(|node| &node.value);
             let of = |p: &'static octant_faults::catalogue::FaultParameter| {
                 values(p, [triad, turn], given(p.name), times)
                     .map(|values| FormKey { name: p.name.to_owned(), values })
@@ -92,7 +92,7 @@ fn seconds(from: f64, to: f64, is_logarithmic: bool) -> NumberRange {
 fn values(
     parameter: &'static octant_faults::catalogue::FaultParameter,
     [triad, turn]: [usize; 2],
-    given: Option<&toml::Value>,
+    given: Option<&Value>,
     times: RunTimes,
 ) -> Option<KeyValues> {
     let fixed = || given.map(|value| KeyValues::Fixed(written(value)));
@@ -114,7 +114,7 @@ fn values(
         Takes::Quantity(all, bounds) => {
             let dimension = fault_dimension(all.get(triad).or(all.first())?);
             let own = given
-                .and_then(toml::Value::as_str)
+                .and_then(as_text)
                 .filter(|text| quantity_of(text).is_ok_and(|quantity| quantity.is(dimension)));
             let text = own.unwrap_or(dimension.example);
             let (middle, unit) = divided(text)?;
@@ -131,17 +131,14 @@ fn values(
     }
 }
 
-fn number(value: &toml::Value) -> Option<f64> {
-    value.as_float().or(value.as_integer().map(|whole| whole as f64))
-}
-
 /// A vector that isn't zero, times a factor around 1.
-fn vector(value: &toml::Value, turn: usize) -> Option<ScaledVector> {
-    let component = |value: &toml::Value| match value.as_str() {
-        Some(text) => divided(text).map(|(number, unit)| (number, unit.to_owned())),
-        None => Some((number(value)?, String::new())),
+fn vector(value: &Value, turn: usize) -> Option<ScaledVector> {
+    let component = |node: &Node| match &node.value {
+        Value::Text(text) => divided(text).map(|(number, unit)| (number, unit.to_owned())),
+        value => Some((number(value)?, String::new())),
     };
-    let all = value.as_array()?.iter().map(component).collect::<Option<Vec<_>>>()?;
+    let Value::Array(all) = value else { return None };
+    let all = all.iter().map(component).collect::<Option<Vec<_>>>()?;
     let factor = NumberRange {
         from: 1.0 / AROUND,
         to: AROUND,
@@ -221,4 +218,33 @@ fn around(
     let is_whole = unit == "samples";
     let unit = unit.to_owned();
     Some(NumberRange { from, to, unit, is_logarithmic: from > 0.0, is_whole, digits: DIGITS })
+}
+
+/// A value that is a text.
+pub(crate) fn as_text(value: &Value) -> Option<&str> {
+    match value {
+        Value::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// Writes a value on one line, the keys of a table in the order of their names: journals have spaces so.
+pub(crate) fn written(value: &Value) -> String {
+    match value {
+        Value::Text(text) => format!("{text:?}"),
+        Value::Integer(number) => number.to_string(),
+        Value::Number(number) => format!("{number:?}"),
+        Value::Boolean(flag) => flag.to_string(),
+        Value::Date(text) => text.clone(),
+        Value::Array(all) => {
+            let all: Vec<String> = all.iter().map(|node| written(&node.value)).collect();
+            format!("[{}]", all.join(", "))
+        }
+        Value::Table(table) => {
+            let mut entries: Vec<_> = table.entries.iter().collect();
+            entries.sort_by_key(|entry| &entry.key);
+            let pair = |entry: &&Entry| format!("{:?} = {}", entry.key, written(&entry.node.value));
+            format!("{{ {} }}", entries.iter().map(pair).collect::<Vec<_>>().join(", "))
+        }
+    }
 }

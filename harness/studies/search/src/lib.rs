@@ -27,5 +27,4 @@ pub mod space;
 pub mod space_file;
 #[cfg(test)]
 mod tests;
-mod toml_text;
 pub mod trial;

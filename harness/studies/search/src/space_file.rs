@@ -1,13 +1,13 @@
 //! The space of a search as a file.
 
-use crate::derived::{RunTimes, divided};
+use crate::derived::{RunTimes, as_text, divided, written};
 use crate::space::{Form, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, Space};
-use crate::toml_text::written;
 use octant_base::names::suggestion;
 use octant_faults::kinds;
 use octant_scenario::quantity_of;
+use octant_toml_tree::error::{FileProblems, Place, Problem};
+use octant_toml_tree::{Entry, Node, Table, Value, number as plain};
 use std::path::Path;
-use toml::{Table, Value};
 
 /// Version of the file of a space.
 pub const SPACE_SCHEMA: i64 = 1;
@@ -27,28 +27,10 @@ pub enum SpaceError {
         /// Error of the operating system.
         source: std::io::Error,
     },
-    /// It isn't TOML.
-    #[error("{file}: {source}")]
-    Toml {
-        /// The file.
-        file: String,
-        /// Place and problem.
-        source: Box<toml::de::Error>,
-    },
-    /// A field isn't as it has to be.
-    #[error("{file}: {field}: {problem}")]
-    Field {
-        /// The file.
-        file: String,
-        /// The field, such as `faults[2].amplitude`.
-        field: String,
-        /// What was found and what was expected.
-        problem: String,
-    },
+    /// It isn't TOML, or a field isn't as it has to be.
+    #[error("{0}")]
+    Content(FileProblems),
 }
-
-/// A field and its problem.
-type Wrong = (String, String);
 
 /// Reads a space.
 ///
@@ -59,81 +41,104 @@ pub fn read(path: &Path, times: RunTimes) -> Result<Space, SpaceError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path)
         .map_err(|source| SpaceError::Read { file: file.clone(), source })?;
-    let table: Table = text
-        .parse()
-        .map_err(|source| SpaceError::Toml { file: file.clone(), source: Box::new(source) })?;
-    space(&table, times).map_err(|(field, problem)| SpaceError::Field { file, field, problem })
+    let problems = match octant_toml_tree::parse(&text).map(|table| space(&table, times)) {
+        Ok(Ok(space)) => return Ok(space),
+        Ok(Err(problem)) => vec![problem],
+        Err(problems) => problems,
+    };
+    Err(SpaceError::Content(FileProblems { file, problems }))
 }
 
-fn space(table: &Table, times: RunTimes) -> Result<Space, Wrong> {
-    let wrong = |field: &str, problem: String| (field.to_owned(), problem);
-    match table.get("schema").and_then(Value::as_integer) {
-        Some(SPACE_SCHEMA) => {}
-        Some(newer) if newer > SPACE_SCHEMA => {
+fn space(table: &Table, times: RunTimes) -> Result<Space, Problem> {
+    // Where a key is missing, the place is the beginning of the file.
+    let place = |key: &str| {
+        let node = table.get(key).map(|node| node.place.clone());
+        node.unwrap_or(Place::File { line: 1, column: 1 })
+    };
+    let wrong =
+        |key: &str, message: String| Problem { place: place(key), path: key.to_owned(), message };
+    match table.get("schema").map(|node| &node.value) {
+        Some(Value::Integer(SPACE_SCHEMA)) => {}
+        Some(Value::Integer(newer)) if *newer > SPACE_SCHEMA => {
             let problem =
                 format!("found {newer}, of a newer version: this program reads {SPACE_SCHEMA}");
             return Err(wrong("schema", problem));
         }
         _ => return Err(wrong("schema", format!("expected schema = {SPACE_SCHEMA}"))),
     }
-    if let Some(key) =
-        table.keys().find(|key| !["schema", "title", "faults"].contains(&key.as_str()))
+    let known = ["schema", "title", "faults"];
+    if let Some(Entry { key, place, .. }) =
+        table.entries.iter().find(|entry| !known.contains(&entry.key.as_str()))
     {
-        let known = suggestion(key, ["schema", "title", "faults"].into_iter(), "keys");
-        return Err(wrong(key, format!("unknown key, {known}")));
+        let message = format!("unknown key, {}", suggestion(key, known.into_iter(), "keys"));
+        return Err(Problem { place: place.clone(), path: key.clone(), message });
     }
-    let faults = table.get("faults").and_then(Value::as_array).filter(|all| !all.is_empty());
-    let faults =
-        faults.ok_or_else(|| wrong("faults", "expected one [[faults]] or more".to_owned()))?;
-    let forms = faults.iter().enumerate().map(|(place, fault)| form(place, fault, times));
+    let faults = match table.get("faults").map(|node| &node.value) {
+        Some(Value::Array(all)) if !all.is_empty() => all,
+        _ => return Err(wrong("faults", "expected one [[faults]] or more".to_owned())),
+    };
+    let forms = faults.iter().enumerate().map(|(number, fault)| form(number, fault, times));
     Ok(Space { forms: forms.collect::<Result<_, _>>()? })
 }
 
-fn form(place: usize, fault: &Value, times: RunTimes) -> Result<Form, Wrong> {
-    let field = |key: &str| format!("faults[{}].{key}", place + 1);
-    let table = fault.as_table().ok_or_else(|| (field(""), "expected a table".to_owned()))?;
-    let name = table.get("kind").and_then(Value::as_str);
-    let name = name.ok_or_else(|| (field("kind"), "expected the name of a kind".to_owned()))?;
+fn form(number: usize, fault: &Node, times: RunTimes) -> Result<Form, Problem> {
+    let wrong = |place: &Place, key: &str, message: String| Problem {
+        place: place.clone(),
+        path: format!("faults[{}].{key}", number + 1),
+        message,
+    };
+    let Value::Table(table) = &fault.value else {
+        return Err(wrong(&fault.place, "", "expected a table".to_owned()));
+    };
+    let place = |key: &str| table.get(key).map_or(&fault.place, |node| &node.place);
+    let name = table.get("kind").and_then(|node| as_text(&node.value));
+    let name =
+        name.ok_or_else(|| wrong(place("kind"), "kind", "expected the name of a kind".to_owned()))?;
     let kind = kinds::named(name).ok_or_else(|| {
         let names: Vec<&str> = kinds::all().map(|kind| kind.name).collect();
         let known = suggestion(name, names.iter().copied(), "kinds");
-        (field("kind"), format!("found {name:?}, which is no kind, {known}"))
+        wrong(place("kind"), "kind", format!("found {name:?}, which is no kind, {known}"))
     })?;
-    if table.contains_key("id") {
-        return Err((field("id"), "found an id, which a search gives itself".to_owned()));
+    if table.get("id").is_some() {
+        return Err(wrong(
+            place("id"),
+            "id",
+            "found an id, which a search gives itself".to_owned(),
+        ));
     }
-    if table.contains_key(ONSET) == table.contains_key("trigger") {
-        let problem = "expected either onset, a time or a range of times, or a trigger".to_owned();
-        return Err((field(ONSET), problem));
+    if table.get(ONSET).is_some() == table.get("trigger").is_some() {
+        let message = "expected either onset, a time or a range of times, or a trigger".to_owned();
+        return Err(wrong(place(ONSET), ONSET, message));
     }
-    let keys = table.iter().filter(|(key, _)| *key != "kind").map(|(key, value)| {
-        values(key, value, times)
-            .map(|values| FormKey { name: key.clone(), values })
-            .map_err(|problem| (field(key), problem))
+    let keys = table.entries.iter().filter(|entry| entry.key != "kind").map(|entry| {
+        values(&entry.key, &entry.node.value, times)
+            .map(|values| FormKey { name: entry.key.clone(), values })
+            .map_err(|message| wrong(&entry.node.place, &entry.key, message))
     });
     let mut keys: Vec<FormKey> = keys.collect::<Result<_, _>>()?;
-    // In the order of the kind's parameters, so that the first range is the size of the fault.
+    // In the order of the kind's parameters, so that the first range is the size of the fault; others by their names.
+    keys.sort_by(|a, b| a.name.cmp(&b.name));
     let order = |key: &FormKey| kind.parameters.iter().position(|p| p.name == key.name);
     keys.sort_by_key(|key| order(key).unwrap_or(usize::MAX));
     Ok(Form { kind, keys })
 }
 
 fn values(key: &str, value: &Value, times: RunTimes) -> Result<KeyValues, String> {
-    let Some(table) = value.as_table() else { return Ok(KeyValues::Fixed(written(value))) };
-    if key == "trigger" && !table.contains_key("one_of") {
+    let Value::Table(table) = value else { return Ok(KeyValues::Fixed(written(value))) };
+    if key == "trigger" && table.get("one_of").is_none() {
         return Ok(KeyValues::Fixed(written(value)));
     }
     if let Some(all) = table.get("one_of") {
-        return match all.as_array().map(Vec::as_slice) {
-            Some(all @ [_, ..]) if table.len() == 1 => {
-                Ok(KeyValues::OneOf(all.iter().map(written).collect()))
+        return match &all.value {
+            Value::Array(all) if !all.is_empty() && table.entries.len() == 1 => {
+                Ok(KeyValues::OneOf(all.iter().map(|node| written(&node.value)).collect()))
             }
             _ => Err("expected { one_of = [VALUE, ...] } and nothing else".to_owned()),
         };
     }
     if let Some(vector) = table.get("times") {
         let factor = range("times", table, &["times", "from", "to", "scale"])?;
-        return scaled(vector, factor).map(KeyValues::Multiple);
+        return scaled(&vector.value, factor).map(KeyValues::Multiple);
     }
     let range = range(key, table, &["from", "to", "scale"])?;
     if key == ONSET && range.to * factor(&range.unit) > times.length_s {
@@ -144,26 +149,30 @@ fn values(key: &str, value: &Value, times: RunTimes) -> Result<KeyValues, String
 
 /// A vector of numbers, with units where they are texts.
 fn scaled(vector: &Value, factor: NumberRange) -> Result<ScaledVector, String> {
-    let all = vector.as_array().filter(|all| !all.is_empty());
-    let all = all.ok_or_else(|| "times: expected a vector".to_owned())?;
+    let all = match vector {
+        Value::Array(all) if !all.is_empty() => all,
+        _ => return Err("times: expected a vector".to_owned()),
+    };
     if !factor.unit.is_empty() {
         return Err(format!("found a factor in {}, expected numbers", factor.unit));
     }
-    let components = all.iter().map(number).collect::<Result<_, _>>()?;
+    let components = all.iter().map(|node| number(&node.value)).collect::<Result<_, _>>()?;
     Ok(ScaledVector { components, factor: NumberRange { is_whole: false, ..factor } })
 }
 
 /// Reads `from`, `to` and `scale`.
 fn range(key: &str, table: &Table, known: &[&str]) -> Result<NumberRange, String> {
-    if let Some(other) = table.keys().find(|key| !known.contains(&key.as_str())) {
+    if let Some(Entry { key: other, .. }) =
+        table.entries.iter().find(|entry| !known.contains(&entry.key.as_str()))
+    {
         let known = suggestion(other, known.iter().copied(), "keys");
         return Err(format!("unknown key {other:?}, {known}"));
     }
-    let (Some(from), Some(to)) = (table.get("from"), table.get("to")) else {
+    let value = |key: &str| table.get(key).map(|node| &node.value);
+    let (Some(from), Some(to)) = (value("from"), value("to")) else {
         return Err("expected a value, { one_of = [...] } or { from = ..., to = ... }".to_owned());
     };
-    let scale = table.get("scale");
-    let is_whole = from.is_integer() && to.is_integer();
+    let is_whole = matches!((from, to), (Value::Integer(_), Value::Integer(_)));
     let ((from, unit_from), (to, unit)) = (number(from)?, number(to)?);
     let same = unit_from.is_empty() == unit.is_empty()
         && (unit.is_empty() || one(&unit_from)?.same_dimension(one(&unit)?));
@@ -175,7 +184,7 @@ fn range(key: &str, table: &Table, known: &[&str]) -> Result<NumberRange, String
         return Err(format!("found from {from} to {to} {unit}, expected a larger end"));
     }
     let both_above = from > 0.0;
-    let is_logarithmic = match scale.map(Value::as_str) {
+    let is_logarithmic = match value("scale").map(as_text) {
         None => both_above && key != ONSET,
         Some(Some("linear")) => false,
         Some(Some("log")) if both_above => true,
@@ -190,12 +199,10 @@ fn range(key: &str, table: &Table, known: &[&str]) -> Result<NumberRange, String
 
 /// A number, with its unit where it is a text.
 fn number(value: &Value) -> Result<(f64, String), String> {
-    let plain = value.as_float().or(value.as_integer().map(|whole| whole as f64));
-    if let Some(number) = plain.filter(|number| number.is_finite()) {
+    if let Some(number) = plain(value).filter(|number| number.is_finite()) {
         return Ok((number, String::new()));
     }
-    let text = value.as_str().unwrap_or_default();
-    match divided(text) {
+    match divided(as_text(value).unwrap_or_default()) {
         Some((number, unit)) if number.is_finite() && one(unit).is_ok() => {
             Ok((number, unit.to_owned()))
         }

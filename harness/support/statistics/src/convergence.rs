@@ -53,7 +53,7 @@ pub fn convergence<T>(
 #[must_use]
 pub fn mean(values: &[f64], confidence: f64) -> Option<ConfidenceInterval> {
     let (value, deviation) = (crate::sample::mean(values)?, crate::sample::deviation(values)?);
-    let half = crate::deviation::student(values.len() - 1, confidence)? * deviation
+    let half = super::sample::student(values.len() - 1, confidence)? * deviation
         / libm::sqrt(values.len() as f64);
     Some(ConfidenceInterval { value, low: value - half, high: value + half })
 }

@@ -19,7 +19,6 @@
 pub mod allan;
 pub mod cluster;
 pub mod convergence;
-pub mod deviation;
 pub mod draw;
 pub mod envelope;
 pub mod multiple;

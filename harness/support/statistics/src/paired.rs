@@ -5,7 +5,7 @@ use crate::sample::{ConfidenceInterval, deviation, mean, ranks, rms};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{Beta, ContinuousCDF};
 
-pub use crate::deviation::student;
+pub use super::sample::student;
 
 /// P(X ≤ k) for the binomial distribution of n tosses of a fair coin.
 fn fair_coin(k: u64, n: u64) -> f64 {

@@ -2,7 +2,7 @@
 //!
 //! A result of no change is meaningful only together with it.
 
-use crate::deviation::student;
+use super::sample::student;
 use crate::draw::unit;
 use crate::normal;
 use crate::sample::ranks;

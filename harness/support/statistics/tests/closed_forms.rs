@@ -5,7 +5,7 @@ use octant_statistics::outlier::{LIMIT, OutlierScale, outliers};
 use octant_statistics::radius::Plane;
 use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
 use octant_statistics::{
-    convergence, deviation, normal, paired, position, power, quantile, rank, rate, sample,
+    convergence, normal, paired, position, power, quantile, rank, rate, sample,
 };
 
 /// Standard normal numbers of a stream.
@@ -248,16 +248,17 @@ fn power_where_it_is_known_and_where_there_is_none() {
 #[test]
 fn a_deviation_has_the_interval_of_chi_squared() {
     // From tables: χ² with 9 degrees of freedom is 2.700 at 2.5 % and 19.023 at 97.5 %.
-    let (low, high) = deviation::factors(9, 0.95).unwrap();
+    let (low, high) = sample::deviation_factors(9, 0.95).unwrap();
     assert!((low - (9.0f64 / 19.023).sqrt()).abs() < 1e-4, "{low}");
     assert!((high - (9.0f64 / 2.700).sqrt()).abs() < 1e-3, "{high}");
     let mut held = 0;
     for sample in 0..2000 {
-        let interval = deviation::interval(&normals(9, &format!("{sample}"), 12), 0.9).unwrap();
+        let interval =
+            sample::deviation_interval(&normals(9, &format!("{sample}"), 12), 0.9).unwrap();
         held += u32::from(interval.low <= 1.0 && 1.0 <= interval.high);
     }
     // Three standard errors of 90 % of 2000.
     assert!((held as f64 - 1800.0).abs() < 3.0 * 13.5, "{held} of 2000");
-    assert_eq!(deviation::interval(&[1.0], 0.9), None);
-    assert_eq!(deviation::factors(9, 1.0), None);
+    assert_eq!(sample::deviation_interval(&[1.0], 0.9), None);
+    assert_eq!(sample::deviation_factors(9, 1.0), None);
 }

@@ -16,7 +16,7 @@ use octant_statistics::convergence::{mean, pass};
 use octant_statistics::power::{mean_shift, sigma_ratios, signed_rank_shift, turning};
 use octant_statistics::proportion::{Demand, success_lower_bound, success_upper_bound};
 use octant_statistics::sample::ConfidenceInterval;
-use octant_statistics::{deviation, normal, paired, quantile};
+use octant_statistics::{normal, paired, quantile, sample};
 
 const LEVELS: [f64; 3] = [0.5, 0.9, 0.95];
 const QUICK: u64 = 400;
@@ -236,7 +236,8 @@ fn means(study: &mut Study) {
             mean(&numbers.normals(count), level).is_some_and(|i| holds(i, 0.0))
         });
         study.hold(&format!("σ of {count}"), Holds::Level, &|numbers, level| {
-            deviation::interval(&numbers.normals(count), level).is_some_and(|i| holds(i, 1.0))
+            sample::deviation_interval(&numbers.normals(count), level)
+                .is_some_and(|i| holds(i, 1.0))
         });
         study.hold(&format!("mean difference of {count} pairs"), Holds::Level, &|n, level| {
             let shared = n.normals(count);
@@ -293,7 +294,7 @@ fn powers(study: &mut Study) {
     for ratio in [less, more] {
         study.about(&format!("power of a σ of 50, {ratio:.2}"), 0.9, 0.0, &|numbers| {
             let values: Vec<f64> = numbers.normals(50).iter().map(|v| v * ratio).collect();
-            deviation::interval(&values, 0.95).is_some_and(|i| !holds(i, 1.0))
+            sample::deviation_interval(&values, 0.95).is_some_and(|i| !holds(i, 1.0))
         });
     }
 }

@@ -8,7 +8,7 @@ use octant_earth::units::*;
 use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, Health, Mode, Output, Reference, Sample, Status,
 };
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::{InstrumentCase, PERIOD_NS};
 use proptest::prelude::*;
 

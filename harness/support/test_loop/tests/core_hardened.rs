@@ -9,7 +9,7 @@ use octant_calibration::positions::{EIGHT, SIX};
 use octant_earth::units::*;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::{Aiding, Health, Mode, Sample};
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::InstrumentCase;
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 

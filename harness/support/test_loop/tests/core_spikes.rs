@@ -14,7 +14,7 @@ use octant_sample::Mode;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::disturbance::{Disturbance, Gimbal, GimbalAction};
 use octant_sample::parameters::NAMES;
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::{InstrumentCase, dockside};
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use std::collections::BTreeMap;

@@ -17,7 +17,7 @@ use octant_sample::{Mode, Sample};
 use octant_scenario::{Method, Scenario};
 use octant_smoother::constancy::{self, NODES_MAX};
 use octant_smoother::history::FilterHistory;
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::{InstrumentCase, dockside};
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use std::collections::BTreeMap;

@@ -16,7 +16,7 @@ use octant_scenario::{Method, Scenario};
 use octant_score::attitude::CaseAngles;
 use octant_source::configure::configurations;
 use octant_statistics::sample::{mean, percentile, rms};
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -6,7 +6,7 @@ use octant_earth::units::MICRO_G;
 use octant_random::stream::Triad;
 use octant_sample::Mode;
 use octant_sample::further::FurtherGroup;
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::InstrumentCase;
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 

@@ -8,7 +8,7 @@ use octant_plant::config as plant;
 use octant_plant::draw::{Draw, ParameterDraws, parameters};
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use octant_sample::{DeviceTime, Health, Mode};
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::InstrumentCase;
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, assert_consistent};

@@ -10,7 +10,7 @@ use octant_plant::draw::{Draw, ParameterDraws, further as drawn, parameters};
 use octant_sample::counts::GIMBAL_LSB_RAD;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use octant_sample::{Health, Mode};
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::InstrumentCase;
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, assert_consistent};

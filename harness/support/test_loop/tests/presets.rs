@@ -10,7 +10,7 @@ use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use octant_sample::{Mode, Parameters};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{FLICKER, GRADES, GradeSheet, Method, Scenario};
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, chi_squared_limit};
 use std::path::Path;

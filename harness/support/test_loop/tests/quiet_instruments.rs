@@ -4,7 +4,7 @@ use octant_sample::Mode;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, assert_consistent, chi_squared_limit};
 use std::path::Path;

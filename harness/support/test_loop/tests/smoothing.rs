@@ -13,7 +13,7 @@ use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_smoother::backward::SmoothedCalibration;
 use octant_smoother::history::FilterHistory;
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::InstrumentCase;
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 

@@ -13,7 +13,7 @@ use octant_plant::config::Sinusoid;
 use octant_plant::draw::{Draw, ParameterDraws, alignment_error, parameters, phases};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Mode, Parameters};
-use octant_test_loop::draws::draws;
+use octant_test_loop::draws;
 use octant_test_loop::instrument::{InstrumentCase, base_of};
 use octant_test_loop::plant_and_core::{ClosedLoop, on_two_threads};
 use octant_test_loop::squares::{AttitudeSquares, chi_squared_limit};

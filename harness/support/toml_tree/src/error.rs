@@ -1,4 +1,4 @@
-//! Problems of a scenario, with their places.
+//! Problems of a file of TOML, with their places.
 
 use std::fmt;
 use std::path::Path;
@@ -13,17 +13,15 @@ pub enum Place {
         /// Column, in characters.
         column: usize,
     },
-    /// Argument of a `--set`.
+    /// Argument of a command line, behind its option.
     Argument(String),
-    /// Argument of a `--fire`.
-    Fire(String),
     /// The file as a whole, which can't be read.
     Unread,
-    /// No place: the default of a key that the scenario omits.
+    /// No place: the default of a key that the file omits.
     Default,
 }
 
-/// One problem of a scenario.
+/// One problem of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// Place.
@@ -34,17 +32,17 @@ pub struct Problem {
     pub message: String,
 }
 
-/// Error of a scenario that can't be run: all problems found, in the order of the file.
+/// Error of a file that can't be used: all problems found, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ScenarioError {
+pub struct FileProblems {
     /// Name of the file.
     pub file: String,
     /// The problems, at least one.
     pub problems: Vec<Problem>,
 }
 
-impl ScenarioError {
-    /// Reads a file of scenarios, suites or campaigns.
+impl FileProblems {
+    /// Reads the text of a file.
     ///
     /// # Errors
     /// If it can't be read.
@@ -60,7 +58,7 @@ impl ScenarioError {
     }
 }
 
-impl fmt::Display for ScenarioError {
+impl fmt::Display for FileProblems {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, problem) in self.problems.iter().enumerate() {
             if index > 0 {
@@ -68,8 +66,7 @@ impl fmt::Display for ScenarioError {
             }
             match &problem.place {
                 Place::File { line, column } => write!(f, "{}:{line}:{column}: ", self.file)?,
-                Place::Argument(argument) => write!(f, "--set {argument}: ")?,
-                Place::Fire(argument) => write!(f, "--fire {argument}: ")?,
+                Place::Argument(argument) => write!(f, "{argument}: ")?,
                 Place::Unread => write!(f, "failed to read {}: ", self.file)?,
                 Place::Default => write!(f, "{}: ", self.file)?,
             }
@@ -82,4 +79,4 @@ impl fmt::Display for ScenarioError {
     }
 }
 
-impl std::error::Error for ScenarioError {}
+impl std::error::Error for FileProblems {}

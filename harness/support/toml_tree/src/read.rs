@@ -35,11 +35,12 @@ pub fn parse(text: &str) -> Result<Table, Vec<Problem>> {
 /// Reads TOML text into a type of its own.
 ///
 /// # Errors
-/// If it is no TOML, or doesn't fit the type: the line, where there is one, and the reason.
-pub fn read_as<T: DeserializeOwned>(text: &str) -> Result<T, (Option<usize>, String)> {
-    toml::from_str(text).map_err(|error| {
-        let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
-        (line, error.message().to_owned())
+/// If it is no TOML, or doesn't fit the type: the place, which is [`Place::Unread`] where there is none, and the reason.
+pub fn read_as<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
+    toml::from_str(text).map_err(|error| Problem {
+        place: error.span().map_or(Place::Unread, |span| Lines::new(text).place(span.start)),
+        path: String::new(),
+        message: error.message().to_owned(),
     })
 }
 
@@ -51,7 +52,8 @@ pub fn number_as_written(text: &str, place: &Place) -> String {
     number.filter(|c| *c != '_').collect()
 }
 
-/// Parses the value of a `--set KEY=VALUE`: TOML, or a text without quotes.
+/// Parses the value of an argument of a command line: TOML, or a text without quotes. `argument` is the whole of it,
+/// behind its option, for problems.
 pub fn parse_argument(value: &str, argument: &str) -> Node {
     let place = Place::Argument(argument.to_owned());
     let value = value.trim();

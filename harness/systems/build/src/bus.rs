@@ -1,8 +1,7 @@
 //! Adds the parts that FMI-LS-BUS 1.0.0 requires beside a model's variables: a terminal and a
 //! manifest.
 
-use super::element::Element;
-use super::graphics::picture;
+use super::element::{Element, picture};
 use octant_fmu::calibrator_can::table::{BUS, NOTIFICATIONS};
 use octant_fmu::table::Model;
 

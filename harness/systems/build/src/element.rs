@@ -94,6 +94,22 @@ pub(super) fn list<T: ToString>(values: impl IntoIterator<Item = T>) -> String {
     values.into_iter().map(|value| value.to_string()).collect::<Vec<_>>().join(" ")
 }
 
+/// Builds the graphical position of a terminal.
+pub(super) fn picture(place: [f64; 4]) -> Element {
+    corners(Element::new("TerminalGraphicalRepresentation"), place)
+        .with("defaultConnectionColor", "0 101 163")
+        .with("defaultConnectionStrokeSize", "1")
+        .with("iconBaseName", "terminal")
+}
+
+/// Adds the corners of a rectangle.
+pub(super) fn corners(element: Element, place: [f64; 4]) -> Element {
+    ["x1", "y1", "x2", "y2"]
+        .into_iter()
+        .zip(place)
+        .fold(element, |element, (name, value)| element.with(name, number(value)))
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]

@@ -16,11 +16,8 @@ mod describe;
 mod documentation;
 mod element;
 mod error;
-mod graphics;
 mod library;
 mod licences;
-mod names;
-mod own;
 mod parameters;
 mod prose;
 mod reference;
@@ -44,10 +41,9 @@ use octant_fmu::component::ModelComponent as _;
 use octant_fmu::plant::PlantFmu;
 use octant_fmu::table::Model;
 use octant_scenario::Scenario;
-use own::Own;
 use standard::Standard;
 use std::path::PathBuf;
-use system::Configured;
+use system::{Configured, Own};
 
 /// Settings of a build.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! Renders the parameter values of a scenario for an FMI tool, as SSV and as CSV.
 
 use super::element::number;
-use super::names::scalar_names;
+use super::reference::scalar_names;
 use super::ssp::ParameterValues;
 use octant_fmu::table::{ElementType, Model};
 

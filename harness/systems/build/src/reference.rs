@@ -9,7 +9,6 @@
 use super::archive::File;
 use super::describe::{STEP_S, STOP_S};
 use super::element::{list, number};
-use super::names::scalar_names;
 use super::standard::Standard;
 use octant_fmu::component::ModelComponent;
 use octant_fmu::table::{DeclaredCausality, DeclaredVariable, ElementType, Model};
@@ -165,5 +164,13 @@ fn cell(values: &CellValues, slot: usize, kind: ElementType) -> String {
         ElementType::Boolean => u8::from(values.boolean(slot)).to_string(),
         // Models with such variables have no table of values.
         ElementType::Binary(_) | ElementType::Clock(_) => String::new(),
+    }
+}
+
+/// Returns `name`, or `name[1]`, `name[2]` and so on.
+pub(super) fn scalar_names(variable: &DeclaredVariable) -> Vec<String> {
+    match variable.elements {
+        0 => vec![variable.name.to_owned()],
+        count => (1..=count).map(|element| format!("{}[{element}]", variable.name)).collect(),
     }
 }

@@ -5,7 +5,7 @@
 
 use super::describe::{TOOL, base_unit, units};
 use super::element::{Element, number};
-use super::names::scalar_names;
+use super::reference::scalar_names;
 use octant_fmu::table::{DeclaredCausality, DeclaredVariable, ElementType, Model};
 
 /// Parameter values of one component, as built by [`super::parameters`].

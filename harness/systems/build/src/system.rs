@@ -2,8 +2,8 @@
 
 use super::archive::{File, archive};
 use super::error::BuildError;
-use super::own::Own;
 use super::parameters;
+use super::reference::Reference;
 use super::ssp::{self, ParameterValues};
 use octant_fmu::table::Model;
 use octant_scenario::{Method, Scenario};
@@ -112,4 +112,12 @@ pub(super) fn archive_of(
         files.push(File::new(component.parameters.clone(), set));
     }
     Ok(archive(&files)?)
+}
+
+/// One of our models, with the data for its FMUs.
+pub(super) struct Own {
+    pub(super) model: &'static Model,
+    /// Inputs and results with which users check their tools. A model on a bus has none: tables of
+    /// values have no columns for clocked variables.
+    pub(super) reference: Option<Reference>,
 }

@@ -2,8 +2,7 @@
 //! models, so that a tool connects the two by dragging one line.
 
 use super::bus;
-use super::element::Element;
-use super::graphics::{corners, picture};
+use super::element::{Element, corners, picture};
 use octant_fmu::table::{DeclaredCausality, DeclaredVariable, Model};
 
 /// Terminal: its name, its description, and the prefixes of its variables' names.

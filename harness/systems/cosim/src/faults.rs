@@ -9,7 +9,7 @@ use octant_faults::connection::kinds::Target;
 use octant_faults::connection::{ConnectionFaultSpec, ConnectionStation};
 use octant_faults::{FaultBuildError, Value, Values};
 use octant_fmu_host::description::{Description, VariableType};
-use octant_scenario::{ConnectionFault, Given, Problem, ScenarioError, quantity_of};
+use octant_scenario::{ConnectionFault, FileProblems, Given, Problem, quantity_of};
 
 /// Faults of a run, ready to act.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ pub fn looked_at(
     faults: &[ConnectionFault],
     file: &str,
     names: &[&str],
-) -> Result<Vec<Looked>, ScenarioError> {
+) -> Result<Vec<Looked>, FileProblems> {
     let mut all = Vec::new();
     for fault in faults {
         if let Some(when) = &fault.when {
@@ -73,8 +73,8 @@ pub fn looked_at(
     Ok(all)
 }
 
-fn of_file(file: &str, problem: Problem) -> ScenarioError {
-    ScenarioError { file: file.to_owned(), problems: vec![problem] }
+fn of_file(file: &str, problem: Problem) -> FileProblems {
+    FileProblems { file: file.to_owned(), problems: vec![problem] }
 }
 
 fn written<'a>(when: &'a str, names: &[&str]) -> Result<Written<'a>, String> {
@@ -112,7 +112,7 @@ impl Faulting {
         descriptions: &[&Description],
         seed: u64,
         step_s: f64,
-    ) -> Result<Self, ScenarioError> {
+    ) -> Result<Self, FileProblems> {
         let names: Vec<&str> = system.nodes.iter().map(|node| node.name.as_str()).collect();
         let mut specs = Vec::with_capacity(faults.len());
         let mut conditions = Vec::with_capacity(faults.len());

@@ -5,7 +5,7 @@ use super::convert::WireUnit;
 use super::faults::in_unit_of;
 use octant_base::names::suggestion;
 use octant_faults::catalogue::Takes;
-use octant_scenario::{Given, Problem, ScenarioError, SystemRequirement};
+use octant_scenario::{FileProblems, Given, Problem, SystemRequirement};
 use octant_score::verdict::RequirementResult;
 use octant_verdict::verdict::LimitCheck;
 use octant_verdict::{Comparison, Verdict};
@@ -58,11 +58,11 @@ impl Requiring {
         requirements: &[SystemRequirement],
         file: &str,
         signals: &[NamedSignal],
-    ) -> Result<Self, ScenarioError> {
+    ) -> Result<Self, FileProblems> {
         let all = requirements.iter().map(|one| required(one, signals));
         let all = all.collect::<Result<_, Problem>>();
         all.map(|all| Self { all })
-            .map_err(|problem| ScenarioError { file: file.to_owned(), problems: vec![problem] })
+            .map_err(|problem| FileProblems { file: file.to_owned(), problems: vec![problem] })
     }
 
     /// True if nothing is required.

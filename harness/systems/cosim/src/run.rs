@@ -24,7 +24,7 @@ use octant_fmu_bind::settings::Starts;
 use octant_fmu_host::instance::{Instance, ProcessPlace};
 use octant_fmu_host::{OpenedFmu, description::Description};
 use octant_recorder::Event;
-use octant_scenario::{ScenarioError, connection_faults, system_requirements, text_of};
+use octant_scenario::{FileProblems, connection_faults, system_requirements, text_of};
 use octant_score::judge::NO_REQUIREMENT;
 use octant_score::summary::{FaultResult, results};
 use octant_score::verdict::RequirementResult;
@@ -77,7 +77,7 @@ pub enum PrepareError {
     Ssp(#[from] SspError),
     /// The faults or requirements aren't valid.
     #[error(transparent)]
-    List(#[from] ScenarioError),
+    List(#[from] FileProblems),
     /// The settings of the run aren't valid.
     #[error("{0}")]
     Usage(String),
@@ -451,7 +451,7 @@ fn tell_faults(
 fn given_or(
     path: Option<&Path>,
     ours: Option<&TomlText>,
-) -> Result<Option<TomlText>, ScenarioError> {
+) -> Result<Option<TomlText>, FileProblems> {
     match path {
         Some(path) => Ok(Some(TomlText { file: path.display().to_string(), text: text_of(path)? })),
         None => Ok(ours.cloned()),

@@ -1,6 +1,5 @@
 //! Edges of spikes in blocks without noise.
 
-use super::step::weights;
 use super::way::c_cb;
 use super::*;
 use crate::config::{AidingMode, BaseMotion, ErrorModel, Prior, SwayNoise};
@@ -74,7 +73,7 @@ fn rolling(k: usize) -> f64 {
 
 #[test]
 fn the_filter_is_blind_to_polynomials_and_of_norm_one() {
-    let weights = weights();
+    let weights = step_weights();
     for power in 0..=DEGREE {
         let sum: f64 = weights
             .iter()

@@ -11,10 +11,9 @@
 //! suffices for any number of intervals.
 
 use super::interval::StaticInterval;
-use super::limits::RESIDUAL_RMS_MAX;
 use super::moves::{ACCEL_TERMS, Compensation, GYRO_TERMS, Move, matrix};
 use super::normal::solve;
-use super::refusal::AdjustmentRefusal;
+use super::refusal::{AdjustmentRefusal, RESIDUAL_RMS_MAX};
 use crate::standstill::{AverageUncertainty, JointAttitude};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, UnitQuaternion, Vector3};
 use octant_earth::rotation::{exp, log, skew};

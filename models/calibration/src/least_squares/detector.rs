@@ -1,8 +1,7 @@
 //! Detection of standstill from the data: windowed standard deviation of specific force against
 //! that of a first interval that is known to be static.
 
-use super::limits::WINDOW_SAMPLES_MAX;
-use super::refusal::AdjustmentRefusal;
+use super::refusal::{AdjustmentRefusal, WINDOW_SAMPLES_MAX};
 use nalgebra::Vector3;
 use octant_sample::Sample;
 use octant_sample::counts::DELTA_VELOCITY_LSB_MPS;

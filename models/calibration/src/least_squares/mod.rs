@@ -30,7 +30,6 @@ pub(crate) mod accelerometer;
 pub(crate) mod chain;
 mod detector;
 pub(crate) mod interval;
-mod limits;
 pub(crate) mod moves;
 mod normal;
 pub mod raw;
@@ -49,9 +48,8 @@ use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_sample::{Parameters, Sample};
 
 pub use interval::StaticInterval;
-pub use limits::{INTERVALS_MAX, RESIDUAL_RMS_MAX, WINDOW_SAMPLES_MAX};
-pub use refusal::AdjustmentRefusal;
 pub(crate) use refusal::positive;
+pub use refusal::{AdjustmentRefusal, INTERVALS_MAX, RESIDUAL_RMS_MAX, WINDOW_SAMPLES_MAX};
 
 /// Shortest standstill to use if the procedure commands it, s.
 const SHORTEST_COMMANDED_S: f64 = 1.0;

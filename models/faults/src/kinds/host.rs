@@ -3,8 +3,7 @@
 use crate::catalogue::{
     Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
 };
-use crate::host::HostAction;
-use crate::rule::FaultRule;
+use crate::rule::{FaultRule, HostAction};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 

@@ -2,8 +2,7 @@
 
 use crate::kinds::added::Adder;
 use crate::kinds::channel::read;
-use crate::kinds::onset::Onset;
-use crate::rule::{Context, FaultRule, SampleRule};
+use crate::rule::{Context, FaultRule, Onset, SampleRule};
 use crate::values::Channels;
 use alloc::boxed::Box;
 use core::fmt;

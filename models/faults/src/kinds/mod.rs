@@ -3,17 +3,14 @@
 mod added;
 mod aiding;
 mod analogue;
-mod chance;
 mod channel;
 mod digital;
 pub mod host;
 mod mapped;
-mod onset;
+mod parameters;
 mod physics;
 mod plant;
 mod ring_laser;
-mod six;
-mod span;
 mod supply;
 mod time;
 mod turntable;

@@ -18,9 +18,9 @@ use octant_base::display::DisplayUnits;
 use octant_observe::ensemble::{DriftBand, Ensemble, EnsembleError, ErrorBand, ensemble};
 use octant_sample::further::FURTHER_NAMES;
 use octant_sample::parameters::NAMES;
-use octant_scenario::Method;
+use octant_statistics::sample::deviation_factors;
 use octant_statistics::sample::{ConfidenceInterval, mean};
-use octant_statistics::{deviation, paired, power};
+use octant_statistics::{paired, power};
 use sample::{ErrorFigures, FinalErrors, MethodSample, SampleCounts, SampleError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -151,10 +151,8 @@ pub fn against_by(
             ));
             continue;
         }
-        let methods = std::iter::once(Method::Primary)
-            .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
         let (mut ensembles, mut samples) = (Vec::new(), Vec::new());
-        for method in methods {
+        for method in scenario.methods() {
             match ensemble(&scenario, method) {
                 Ok(ensemble) => {
                     let hours = times(&ensemble).map(|time| time.hours).collect();
@@ -244,7 +242,7 @@ fn compare(
     let rows = predicted + 2 * times.len() + finals.len();
     // Each row has two intervals.
     let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
-    let (low, high) = deviation::factors(count as u64 - 1, each)
+    let (low, high) = deviation_factors(count as u64 - 1, each)
         .ok_or_else(|| format!("{count} runs know no σ"))?;
     let student =
         paired::student(count - 1, each).ok_or_else(|| format!("{count} runs know no σ"))?;

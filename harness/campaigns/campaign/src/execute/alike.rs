@@ -56,8 +56,7 @@ pub fn run_alike(planned: &PlannedScenario, cases: &[&Case]) -> Vec<Result<CaseR
     let mut runs: Vec<(usize, Method)> = Vec::new();
     for (place, scenario) in scenarios.iter().enumerate() {
         let Ok(scenario) = scenario else { continue };
-        let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
-        for method in [Some(Method::Primary), baseline].into_iter().flatten() {
+        for method in scenario.methods() {
             let seed = cases[place].seed;
             let keeping = StreamKeeping::HashAlone;
             plans.push(Plan::of(scenario, method, seed, keeping, &control));

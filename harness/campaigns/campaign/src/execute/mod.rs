@@ -13,8 +13,8 @@ mod worker;
 pub use crate::plan::shard::{Shard, ShardError};
 pub use execution::{CaseDone, ExecuteError, ExecutionEvent, ExecutionSummary};
 
+use super::plan::CasePlaces;
 use crate::judge::status::StatusError;
-use crate::plan::case_places::CasePlaces;
 use crate::plan::{Case, Plan};
 use crate::store::error::ResultPlace;
 use crate::store::writer::PartWriter;

@@ -17,13 +17,13 @@ pub(crate) fn is_refused_alone(result: &CaseResult) -> bool {
     summary.calibration.iter_mut().for_each(|calibration| calibration.refused = None);
     // The work missing after a refusal is part of that refusal.
     (summary.planned, summary.done) = (None, None);
-    judge::besides(&summary) <= Verdict::Pass
+    judge::except_requirements(&summary) <= Verdict::Pass
 }
 
 /// Returns the verdict of a case except for its requirements.
-pub(crate) fn besides(result: &CaseResult) -> Verdict {
+pub(crate) fn verdict_except_requirements(result: &CaseResult) -> Verdict {
     let Some(summary) = &result.summary else { return Verdict::Error };
-    let worst = judge::besides(summary);
+    let worst = judge::except_requirements(summary);
     // A verdict that these parts don't explain comes from elsewhere.
     let known = summary.requirements.iter().map(|check| check.verdict).fold(worst, Verdict::worst);
     if result.verdict > known { result.verdict } else { worst }

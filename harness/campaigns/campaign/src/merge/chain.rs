@@ -7,8 +7,7 @@
 use super::factors::FactorColumns;
 use super::results::{self, RESULT, TABLES};
 use super::rows::{CaseColumn, CaseTable};
-use crate::plan::Plan;
-use crate::plan::case_places::CasePlaces;
+use crate::plan::{CasePlaces, Plan};
 use crate::store::CampaignResults;
 use crate::table::spill::SpilledRows;
 use crate::table::{ColumnKind, ColumnValue, TableError};

@@ -5,9 +5,9 @@ pub mod factors;
 pub mod results;
 mod rows;
 
+use super::plan::CasePlaces;
 use crate::judge::independence::Shown;
 use crate::judge::stop;
-use crate::plan::case_places::CasePlaces;
 use crate::plan::shard::Shard;
 use crate::plan::{Plan, short};
 use crate::table::{

@@ -2,7 +2,7 @@
 
 use super::factors::FactorColumns;
 use crate::execute::case::{CaseResult, ResultError};
-use crate::judge::except_requirements::besides;
+use crate::judge::except_requirements::verdict_except_requirements;
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
 use crate::store::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
@@ -207,7 +207,7 @@ fn case_row(
         ("seed", i64::try_from(case.seed).ok().map(ColumnValue::Integer)),
         ("replicate", Some(ColumnValue::Integer(i64::from(case.replicate)))),
         ("verdict", Some(text(result.verdict.name()))),
-        ("besides", Some(text(besides(result).name()))),
+        ("besides", Some(text(verdict_except_requirements(result).name()))),
         ("reasons", summary.map(|summary| text(summary.reasons.join("; ")))),
         ("error", result.error.as_deref().map(text)),
         ("stream_hash", summary.map(|summary| text(summary.stream_hash.as_str()))),

@@ -1,6 +1,6 @@
 //! Rows of a table by the cases that they belong to, read column by column.
 
-use crate::plan::case_places::CasePlaces;
+use crate::plan::CasePlaces;
 use crate::table::{ColumnCursor, ColumnValue, ColumnValues, ExistingTable, TableError};
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! Reasons why there is no plan.
 
 use octant_base::failing::{Failing, FailureKind};
-use octant_scenario::ScenarioError;
+use octant_scenario::FileProblems;
 use octant_verdict::RequirementsError;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 pub enum PlanError {
     /// A file of the campaign isn't valid.
     #[error(transparent)]
-    File(#[from] ScenarioError),
+    File(#[from] FileProblems),
     /// The file of requirements isn't valid.
     #[error(transparent)]
     Requirements(#[from] RequirementsError),

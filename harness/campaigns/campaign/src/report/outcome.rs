@@ -2,7 +2,7 @@
 
 use super::curves::{Curve, CurveWriter, StoredCurve};
 use crate::execute::case::CaseResult;
-use crate::judge::except_requirements::besides;
+use crate::judge::except_requirements::verdict_except_requirements;
 use octant_score::summary::{NavigationScore, Summary};
 use octant_score::verdict::RequirementResult;
 use octant_verdict::Verdict;
@@ -64,7 +64,7 @@ pub(super) struct ReadOutcome {
 
 impl ReadOutcome {
     pub(super) fn of(result: CaseResult, differs: bool) -> Self {
-        let besides = besides(&result);
+        let besides = verdict_except_requirements(&result);
         let (verdict, error) = (result.verdict, result.error);
         let mut outcome = RowOutcome {
             verdict,

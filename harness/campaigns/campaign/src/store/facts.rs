@@ -1,7 +1,7 @@
 //! Facts of a result: all that the state of a campaign needs, in a hundredth of the result's bytes.
 
 use crate::execute::case::{CaseResult, ResultClaim, ResultError};
-use crate::judge::except_requirements::{besides, is_refused_alone};
+use crate::judge::except_requirements::{is_refused_alone, verdict_except_requirements};
 use crate::plan::{Case, PlannedScenario};
 use crate::store::error::ResultPlace;
 use octant_score::rederive::stands;
@@ -51,7 +51,7 @@ impl CaseFacts {
         Self {
             schema: result.schema,
             verdict: result.verdict,
-            besides: besides(result),
+            besides: verdict_except_requirements(result),
             refused_alone: is_refused_alone(result),
             error: result.error.clone(),
             reason: summary.and_then(|summary| summary.reasons.first().cloned()),

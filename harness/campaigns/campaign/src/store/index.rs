@@ -2,7 +2,6 @@
 
 use super::error::{PartError, ResultPlace};
 use super::facts::CaseFacts;
-use super::files;
 use super::frame::{Checksum, RecordKind, first};
 use super::scan::{Found, hex, read_checksum, read_head, read_whole, scan};
 use super::stored::{Stored, StoredFile, StoredId, StoredRecord, read_file};
@@ -91,8 +90,7 @@ impl CampaignResults {
             let path = place.path().to_owned();
             (case.as_str().into(), Stored::File(Box::new(StoredFile { path, is_second })))
         };
-        let mut stored: Vec<(StoredId, Stored)> =
-            files::all(folder).into_iter().map(file).collect();
+        let mut stored: Vec<(StoredId, Stored)> = all_files(folder).into_iter().map(file).collect();
         let has_files = !stored.is_empty();
         let paths = parts(&folder.join(FOLDER))?;
         let mut parts = Vec::with_capacity(paths.len());
@@ -463,4 +461,31 @@ fn parts(folder: &Path) -> Result<Vec<PathBuf>, ResultError> {
     }
     found.sort();
     Ok(found)
+}
+
+/// Folder of the files, in the folder of a campaign.
+const CASES: &str = "cases";
+
+/// Returns the result file of a case in the folder of its campaign, as versions before part files wrote it.
+#[must_use]
+pub fn file(folder: &Path, id: &str) -> PathBuf {
+    folder.join(CASES).join(id.get(..2).unwrap_or("")).join(format!("{id}.json"))
+}
+
+/// Lists the results: each with its case, and whether it is a second one, stored beside another.
+fn all_files(folder: &Path) -> Vec<(String, bool, ResultPlace)> {
+    let read = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut found: Vec<_> = read(folder.join(CASES))
+        .flat_map(|part| read(part.path()))
+        .filter_map(|entry| {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let name = name.strip_suffix(".json")?;
+            let (id, rest) = name.split_once('.').unwrap_or((name, ""));
+            let is_second = rest.starts_with("differs-");
+            (is_second || rest.is_empty() && !id.is_empty())
+                .then(|| (id.to_owned(), is_second, ResultPlace::File(entry.path())))
+        })
+        .collect();
+    found.sort();
+    found
 }

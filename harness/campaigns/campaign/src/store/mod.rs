@@ -7,7 +7,6 @@
 
 pub mod error;
 pub mod facts;
-mod files;
 mod frame;
 pub(crate) mod in_plan_order;
 mod index;
@@ -19,8 +18,7 @@ mod stored;
 pub(crate) mod stream_key;
 pub mod writer;
 
-pub use files::file;
-pub use index::{CampaignResults, StoredResult};
+pub use index::{CampaignResults, StoredResult, file};
 pub use keep::{StoreOutcome, forget_errors, has_at, keep, keep_in};
 
 #[cfg(test)]

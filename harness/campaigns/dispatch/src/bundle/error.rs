@@ -2,7 +2,7 @@
 
 use octant_base::failing::{Failing, FailureKind};
 use octant_campaign::plan::PlanError;
-use octant_scenario::{FileNameError, ScenarioError};
+use octant_scenario::{FileNameError, FileProblems};
 use std::path::PathBuf;
 
 /// Reasons why a bundle can't be made or used. The text fits after "failed to".
@@ -13,7 +13,7 @@ pub enum BundleError {
     Plan(#[from] PlanError),
     /// A scenario isn't valid.
     #[error(transparent)]
-    Scenario(#[from] ScenarioError),
+    Scenario(#[from] FileProblems),
     /// The name of a file can't be expanded.
     #[error(transparent)]
     Name(#[from] FileNameError),

@@ -11,7 +11,6 @@
 pub mod address;
 pub mod error;
 pub mod layout;
-mod listing;
 pub mod objects;
 pub mod uploads;
 pub mod work_folder;

@@ -3,18 +3,18 @@
 use super::address::{StorageAddress, StoragePlace};
 use super::error::StorageError;
 use super::layout::BUNDLE;
-use super::listing::pages;
 use futures_util::TryStreamExt;
 use futures_util::future::{Either, join_all, select};
 use object_store::aws::{AmazonS3, AmazonS3Builder, Checksum};
+use object_store::list::{PaginatedListOptions, PaginatedListStore};
 use object_store::local::LocalFileSystem;
 use object_store::memory::InMemory;
 use object_store::path::Path as ObjectPath;
 use object_store::{
-    BackoffConfig, ClientOptions, Error, ObjectStore, ObjectStoreExt, PutMode, PutPayload,
-    RetryConfig,
+    BackoffConfig, ClientOptions, Error, ObjectMeta, ObjectStore, ObjectStoreExt, PutMode,
+    PutPayload, RetryConfig,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::pin::pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -412,5 +412,43 @@ fn one_line(words: &str) -> String {
     match line.char_indices().nth(400) {
         Some((end, _)) => format!("{}…", &line[..end]),
         None => line,
+    }
+}
+
+/// Most objects of a campaign. One worker that uploads every 20 s makes as many in 8 months.
+pub(crate) const OBJECTS_MAX: usize = 1_000_000;
+/// Most pages of a list. A page has up to 1000 objects.
+const PAGES_MAX: usize = 10_000;
+
+/// Reads every page of a list; the inner error says why it doesn't end.
+pub(crate) async fn pages(
+    store: &AmazonS3,
+    prefix: Option<&str>,
+) -> Result<Result<Vec<ObjectMeta>, String>, Error> {
+    let mut all = Vec::new();
+    let mut tokens = BTreeSet::new();
+    let mut page_token = None;
+    loop {
+        let options = PaginatedListOptions { page_token, ..PaginatedListOptions::default() };
+        let page = store.list_paginated(prefix, options).await?;
+        all.extend(page.result.objects);
+        let Some(next) = page.page_token else { return Ok(Ok(all)) };
+        if all.len() > OBJECTS_MAX {
+            return Ok(Err(format!(
+                "found more than {OBJECTS_MAX} objects in the list, expected those of one campaign"
+            )));
+        }
+        if !tokens.insert(next.clone()) {
+            return Ok(Err(format!(
+                "found a list that leads from page {} back to an earlier one, expected one that ends",
+                tokens.len() + 1
+            )));
+        }
+        if tokens.len() >= PAGES_MAX {
+            return Ok(Err(format!(
+                "found a list of more than {PAGES_MAX} pages, expected one that ends"
+            )));
+        }
+        page_token = Some(next);
     }
 }

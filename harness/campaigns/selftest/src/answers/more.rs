@@ -5,7 +5,7 @@ use octant_statistics::draw::{
     Distribution, Factor, FactorCorrelation, latin_hypercube, monte_carlo,
 };
 use octant_statistics::radius::Plane;
-use octant_statistics::{deviation, paired, position, power};
+use octant_statistics::{paired, position, power, sample};
 use std::hint::black_box;
 
 pub(super) fn found() -> Result<Found, String> {
@@ -30,7 +30,7 @@ fn all() -> Option<Found> {
     let (below, above) = power::sigma_ratios(25, 0.95, 0.9)?;
     put("ratio below", below);
     put("ratio above", above);
-    let (below, above) = deviation::factors(24, 0.95)?;
+    let (below, above) = sample::deviation_factors(24, 0.95)?;
     put("factor below", below);
     put("factor above", above);
     put("turning of 50", power::turning(50, 0.05, 0.9)?);

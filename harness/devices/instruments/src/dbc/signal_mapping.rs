@@ -1,6 +1,7 @@
 //! Mapping of signals to channels.
 
 use super::DbcProblem;
+use octant_toml_tree::error::Place;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
@@ -88,9 +89,12 @@ impl SignalMapping {
     /// # Errors
     /// If the text is no mapping, with file, line and key.
     pub fn parse(file: &str, text: &str) -> Result<Self, DbcProblem> {
-        let mapping: Self = octant_toml_tree::read_as(text).map_err(|(line, message)| {
-            let place = line.map_or_else(|| file.into(), |line| std::format!("{file}:{line}"));
-            DbcProblem { place, what: message.trim().to_string() }
+        let mapping: Self = octant_toml_tree::read_as(text).map_err(|problem| {
+            let place = match problem.place {
+                Place::File { line, .. } => std::format!("{file}:{line}"),
+                _ => file.into(),
+            };
+            DbcProblem { place, what: problem.message.trim().to_string() }
         })?;
         Ok(Self { file: file.into(), ..mapping })
     }

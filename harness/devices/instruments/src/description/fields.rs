@@ -1,7 +1,6 @@
 //! Fields of a frame.
 
-use super::problem::DescriptionProblem;
-use super::table::Table;
+use super::table::{DescriptionProblem, Table};
 use crate::ReadingKind;
 use crate::described::{ByteOrder, FieldMeaning, FrameField, FrameNumber, NumberType};
 use crate::units::{Quantity, Unit, names, unit};

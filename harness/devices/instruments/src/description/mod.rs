@@ -19,16 +19,13 @@
 //! that isn't known, a value that isn't possible, and a description of a newer version are errors with file and line.
 
 mod fields;
-mod problem;
 mod read;
-mod ready;
 mod table;
-
-pub use problem::{DescriptionProblem, VERSION};
-pub use ready::READY;
 
 use crate::described::{Described, DescribedDecoder, RecordDescription};
 use std::string::String;
+
+pub use table::{DescriptionProblem, VERSION};
 
 /// Description of a unit.
 #[derive(Clone, Debug)]
@@ -64,3 +61,12 @@ impl UnitDescription {
         DescribedDecoder::new(Described::new(self.record.clone()))
     }
 }
+
+/// Name and text of each.
+pub const READY: [(&str, &str); 5] = [
+    ("kvh-1775-angle", include_str!("../../descriptions/kvh-1775-angle.toml")),
+    ("kvh-1775-rate", include_str!("../../descriptions/kvh-1775-rate.toml")),
+    ("ln-100-like", include_str!("../../descriptions/ln-100-like.toml")),
+    ("stim300-increment", include_str!("../../descriptions/stim300-increment.toml")),
+    ("stim300-rate", include_str!("../../descriptions/stim300-rate.toml")),
+];

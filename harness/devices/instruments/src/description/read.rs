@@ -1,8 +1,7 @@
 //! A description from its text.
 
 use super::fields::{ORDERS, ReadField, fields, place};
-use super::problem::{DescriptionProblem, VERSION};
-use super::table::{Table, Text};
+use super::table::{DescriptionProblem, Table, Text, VERSION};
 use crate::described::{
     ByteOrder, ChecksumKind, CrcParameters, DescribedCrc, FRAME_BYTES_MAX, FieldMeaning,
     FrameChecksum, FrameDescription, FrameField, FrameNumber, NumberType, RecordDescription,

@@ -1,6 +1,5 @@
-//! Tables of a description with the places of their keys.
+//! Tables of a description with the places of their keys, and the problems that name them.
 
-use super::problem::DescriptionProblem;
 use octant_base::names::suggestion;
 use octant_toml_tree::error::Place;
 use octant_toml_tree::{Node, Value, number_as_written};
@@ -209,4 +208,17 @@ fn integer(node: &Node) -> Option<i64> {
         Value::Integer(number) => Some(number),
         _ => None,
     }
+}
+
+/// Version of the format of descriptions.
+pub const VERSION: i64 = 1;
+
+/// Error of a description.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {what}")]
+pub struct DescriptionProblem {
+    /// File with line.
+    pub place: String,
+    /// Key, what was found, what was expected.
+    pub what: String,
 }

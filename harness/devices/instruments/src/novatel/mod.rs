@@ -12,18 +12,16 @@
 //! bytes of longer ones count as lost.
 
 pub(crate) mod ascii;
-mod raw;
 mod scale;
 
-pub use ascii::write_line;
-pub use raw::RawImu;
+pub use ascii::{RawImu, write_line};
 pub use scale::{CountScale, scale_of};
 
+use super::framing::ProtocolFacts;
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
-use crate::facts::ProtocolFacts;
 use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;

@@ -10,6 +10,7 @@ mod pattern;
 pub(crate) use pattern::{Field, Fields, Pattern};
 
 use crate::{Error, TableAxis};
+use octant_toml_tree::error::Place;
 use std::collections::BTreeMap;
 
 /// A command of the table.
@@ -148,9 +149,12 @@ impl Dialect {
     /// # Errors
     /// If the table is invalid: with file, and line or key.
     pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
-        let raw: Raw = octant_toml_tree::read_as(text).map_err(|(line, message)| {
-            let place = line.map_or_else(|| file.into(), |line| format!("{file}:{line}"));
-            Error::Dialect { place, what: message.trim().into() }
+        let raw: Raw = octant_toml_tree::read_as(text).map_err(|problem| {
+            let place = match problem.place {
+                Place::File { line, .. } => format!("{file}:{line}"),
+                _ => file.into(),
+            };
+            Error::Dialect { place, what: problem.message.trim().into() }
         })?;
         let wrong =
             |key: &str, what: String| Error::Dialect { place: format!("{file}: {key}"), what };

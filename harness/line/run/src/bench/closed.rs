@@ -1,8 +1,7 @@
 //! The end of a run: source and endpoint are ended, and the core is asked for its conclusion.
 
 use super::Bench;
-use super::ended::{Ended, RunError};
-use super::kept::{BenchEnd, TimeKeeping};
+use super::ended::{BenchEnd, Ended, RunError, TimeKeeping};
 use super::records::Records;
 use crate::observers::Observers;
 use octant_base::control::Control;

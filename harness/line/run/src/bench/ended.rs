@@ -1,10 +1,14 @@
-//! Ends of a run's loop, planned ones and failures.
+//! Ends of a run's loop, planned ones and failures, with the reports of the bench's parts.
 
 use super::unit::UnitEventError;
+use octant_account::Account;
 use octant_base::failing::{Failing, FailureKind};
 use octant_endpoint::EndpointError;
+use octant_realtime::schedule::Granted;
 use octant_recorder::RecorderError;
+use octant_recorder::event::{BenchRecord, LinkRecord, PowerRecord};
 use octant_sample::{Mode, Output};
+use octant_score::summary::PacingRecord;
 use octant_source::SourceError;
 
 /// How the loop ended.
@@ -60,7 +64,7 @@ pub enum RunError {
     Drift(#[from] octant_score::drift::DriftError),
     /// A calibration can't be smoothed.
     #[error(transparent)]
-    Smoother(#[from] octant_smoother::refusal::SmootherError),
+    Smoother(#[from] octant_smoother::backward::SmootherError),
     /// A recorded event of the unit can't be repeated.
     #[error(transparent)]
     Unit(#[from] UnitEventError),
@@ -97,4 +101,32 @@ impl RunError {
                 | Self::Recorder(RecorderError::Write { .. })
         )
     }
+}
+
+/// Time keeping of a run by the clock.
+#[derive(Clone, Debug)]
+pub struct TimeKeeping {
+    /// Figures for the summary.
+    pub pacing: PacingRecord,
+    /// Real-time settings that the host granted the thread.
+    pub granted: Granted,
+}
+
+/// Reports of the bench's parts at the end of a run.
+#[derive(Debug, Default)]
+pub struct BenchEnd {
+    /// Failure in the middle that ended the run.
+    pub broken: Option<RunError>,
+    /// Description of the point where the source ended in the middle of something.
+    pub cut_short: Option<String>,
+    /// Accounts of what the source read from outside.
+    pub inputs: Vec<Account>,
+    /// Time keeping of a run by the clock.
+    pub kept: Option<TimeKeeping>,
+    /// Device and traffic of a run over a wire; as in the recording.
+    pub link: Option<Box<LinkRecord>>,
+    /// Clocks and counts of a real instrument and its table; as in the recording.
+    pub instrument: Option<Box<BenchRecord>>,
+    /// Switchings of the device's power; as in the recording.
+    pub power: Option<Box<PowerRecord>>,
 }

@@ -4,7 +4,7 @@ use super::error::SetupError;
 use super::host::RunHost;
 use octant_endpoint::Endpoint;
 use octant_faults::Station;
-use octant_faults::host::Hosted;
+use octant_faults::rule::Hosted;
 use octant_faults::station::World;
 use octant_faults::wire::Wired;
 use octant_recorder::Event;

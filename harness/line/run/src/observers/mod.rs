@@ -20,7 +20,6 @@ pub mod gimbals;
 pub mod measurements;
 pub mod moments;
 mod solution;
-pub mod true_motion;
 pub mod whiteness;
 
 use self::answers::Answers;

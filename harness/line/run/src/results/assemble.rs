@@ -4,12 +4,12 @@ use super::difference::difference;
 use super::findings::findings;
 use super::method::MethodRun;
 use super::refusal::{RefusedRun, explained};
-use super::rotation::leaves_g_zz_alone;
 use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use crate::observers::at_rest::instrument_noise;
 use octant_base::display::DisplayUnits;
 use octant_base::number;
-use octant_calibration::sequence::Stop;
+use octant_calibration::sequence::{Sequence, Stop};
+use octant_earth::frames::c_cb;
 use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_recorder::event::FaultResult;
@@ -112,10 +112,7 @@ pub fn assemble_with(
     let references = reference(&ReferenceInput {
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
-        heading_rad: match &scenario.motion {
-            MotionSpec::Static(mean) => mean.heading_rad,
-            MotionSpec::Dockside(ship) => ship.mean.heading_rad,
-        },
+        heading_rad: scenario.motion.heading_rad(),
         angle_random_walk: scenario.imu.angle_random_walk,
         velocity_random_walk: scenario.imu.velocity_random_walk,
         calibration_s: scenario.calibration.as_ref().map(|c| c.duration_s),
@@ -463,4 +460,21 @@ pub fn parameter_lines(parameters: &BTreeMap<String, ParameterScore>) -> String 
         let _ = writeln!(out, "  not estimated: {}", left.join(" "));
     }
     out
+}
+
+/// Returns whether the mean vertical drift over the dwells of a rotation is that of g_zz alone: the
+/// references of a run are closed forms for it. The case is level.
+///
+/// At rest the drift down by G is −g·rᵀ·G·r, where r is down in the body, so its mean has each element of
+/// G with its share of the mean of r·rᵀ.
+#[must_use]
+pub fn leaves_g_zz_alone(rotation: &Sequence) -> bool {
+    let stops = rotation.stops();
+    let weights: f64 = stops.iter().map(|stop| stop.weight).sum();
+    // The mean of r·rᵀ has trace 1 and no negative eigenvalue: where zz is 1, all others are 0.
+    let share = stops.iter().fold(0.0, |sum, stop| {
+        let down = c_cb(stop.azimuth_rad, stop.roll_rad)[(2, 2)];
+        sum + stop.weight * down * down
+    });
+    share / weights > 1.0 - 1e-9
 }

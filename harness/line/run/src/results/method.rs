@@ -2,9 +2,8 @@
 
 use super::aligned::{self, uncertainty_of};
 use crate::bench::closed::Closed;
-use crate::bench::ended::{Ended, RunError};
+use crate::bench::ended::{BenchEnd, Ended, RunError};
 use crate::bench::error::MethodError;
-use crate::bench::kept::BenchEnd;
 use crate::observers::Observers;
 use crate::observers::filtered::FilteredSeries;
 use octant_calibration::config::Estimator;

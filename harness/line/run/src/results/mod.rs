@@ -7,5 +7,4 @@ pub mod findings;
 pub(crate) mod method;
 pub mod raw_counts;
 pub mod refusal;
-pub mod rotation;
 mod scores_text;

@@ -44,10 +44,7 @@ pub fn judge_many(
 ) {
     let clean: Vec<Scenario> = scenarios.iter().map(Scenario::without_faults).collect();
     let runs: Vec<(usize, Method)> = (scenarios.iter().enumerate())
-        .flat_map(|(index, scenario)| {
-            let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
-            [Some(Method::Primary), baseline].into_iter().flatten().map(move |m| (index, m))
-        })
+        .flat_map(|(index, scenario)| scenario.methods().map(move |method| (index, method)))
         .collect();
     // Twins first: a run is compared with its own as soon as it ends, and only the verdict is kept.
     let twin_plans = plans(&clean, &runs, control);

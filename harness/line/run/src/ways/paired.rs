@@ -8,7 +8,7 @@ use octant_base::control::Control;
 use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool::{in_order, processors};
 use octant_sample::parameters::{NAMES, ParameterGroup};
-use octant_scenario::{Method, MotionSpec, Scenario};
+use octant_scenario::{Method, Scenario};
 use octant_score::compare::{Maxima, MethodComparison, PairedRun, compare};
 use octant_score::floor::Floor;
 use octant_score::summary::CalibrationScore;
@@ -95,13 +95,7 @@ pub fn paired(
             second_refused: second.refused,
         })
         .collect();
-    let (heading_rad, lengths) = (
-        match &scenario.motion {
-            MotionSpec::Static(mean) => mean.heading_rad,
-            MotionSpec::Dockside(ship) => ship.mean.heading_rad,
-        },
-        [first, second].map(|side| navigated_h(&side.scenario)),
-    );
+    let lengths = [first, second].map(|side| navigated_h(&side.scenario));
     let navigation_h = (lengths[0] == lengths[1] && lengths[0].is_finite()).then_some(lengths[0]);
     let hours: Vec<f64> = MARKS_H.into_iter().chain(navigation_h).collect();
     let floor = Floor::new(
@@ -110,7 +104,7 @@ pub fn paired(
         scenario.imu.angle_random_walk,
         scenario.imu.velocity_random_walk,
     )
-    .at_heading(heading_rad)
+    .at_heading(scenario.motion.heading_rad())
     .maxima(&hours, FLOOR_MEMBERS, scenario.seed);
     let [a, b] = [first, second].map(|side| side.scenario.method_label(side.method));
     let (a, b) = if a == b { (format!("{a} (first)"), format!("{b} (second)")) } else { (a, b) };

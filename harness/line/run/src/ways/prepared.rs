@@ -86,7 +86,7 @@ impl<'a> Prepared<'a> {
         twins: bool,
         fmus: &OpenedFmus,
     ) -> Result<Self, SetupError> {
-        let methods = methods(scenario);
+        let methods: Vec<Method> = scenario.methods().collect();
         let mut set_up = Vec::with_capacity(methods.len());
         for method in &methods {
             let mut one = SetUp::of(scenario, *method, seed, fmus)?;
@@ -217,12 +217,7 @@ impl<'a> Prepared<'a> {
 /// Number of the runs that take place for a scenario: methods and twins.
 #[must_use]
 pub fn tasks(scenario: &Scenario, twins: bool) -> usize {
-    methods(scenario).len() * if has_twins(scenario, twins) { 2 } else { 1 }
-}
-
-fn methods(scenario: &Scenario) -> Vec<Method> {
-    let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
-    std::iter::once(Method::Primary).chain(baseline).collect()
+    scenario.methods().count() * if has_twins(scenario, twins) { 2 } else { 1 }
 }
 
 fn has_twins(scenario: &Scenario, twins: bool) -> bool {

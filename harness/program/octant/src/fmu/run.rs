@@ -20,7 +20,7 @@ use octant_cosim::single::{Finished, SimulateError, Span, simulate};
 use octant_fmu_bind::settings::{Starts, ValueSettings};
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace};
-use octant_scenario::{ScenarioError, setting_argument};
+use octant_scenario::{FileProblems, setting_argument};
 use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -203,7 +203,7 @@ fn starts(fmu: &Path, set: &[String], instance: &dyn Instance) -> Result<Starts,
     }
     if !problems.is_empty() {
         let file = fmu.display().to_string();
-        return Err(Failure::input(ScenarioError { file, problems }));
+        return Err(Failure::input(FileProblems { file, problems }));
     }
     settings.finish().map_err(|error| Failure::input(format!("failed to set parameters: {error}")))
 }

@@ -10,7 +10,7 @@ use octant_campaign::against::{Against, EnsembleComparison, Selection, against};
 use octant_campaign::plan::{FILE_NAME, Plan};
 use octant_campaign::report::sites;
 use octant_observe::ensemble::{DriftBand, Ensemble, ErrorBand, SolutionBands, ensemble};
-use octant_scenario::{Method, Scenario};
+use octant_scenario::Scenario;
 use octant_verdict::Verdict;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -32,9 +32,7 @@ pub(super) fn command(
 }
 
 fn predict(scenario: &Scenario, units: &DisplayUnits, json: bool) -> Result<Verdict, Failure> {
-    let methods = std::iter::once(Method::Primary)
-        .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
-    let ensembles = methods
+    let ensembles = (scenario.methods())
         .map(|method| ensemble(scenario, method))
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::input(format!("failed to {error}")))?;

@@ -2,7 +2,7 @@
 //! from it.
 
 use super::imports::imports;
-use super::{FILE_LINES_MAX, circle, circles, members, product, root, sources};
+use super::{FILE_LINES_MAX, circles, members, product, root, sources};
 use regex::Regex;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -60,7 +60,7 @@ fn has_circle(files: &[(&str, &str)]) -> bool {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();
     }
-    !circle(&imports(folder.path())).is_empty()
+    !circles(&imports(folder.path())).is_empty()
 }
 
 #[test]

@@ -88,36 +88,6 @@ pub(crate) fn members() -> Vec<(String, Member)> {
     found
 }
 
-/// One circle of a graph, as the names along it; empty where there is none.
-fn circle(graph: &Graph) -> Vec<String> {
-    fn visit(
-        at: &str,
-        graph: &Graph,
-        way: &mut Vec<String>,
-        done: &mut BTreeSet<String>,
-    ) -> Option<Vec<String>> {
-        if let Some(from) = way.iter().position(|name| name == at) {
-            return Some(way[from..].to_vec());
-        }
-        if !done.insert(at.to_owned()) {
-            return None;
-        }
-        way.push(at.to_owned());
-        for next in graph.get(at).into_iter().flatten() {
-            if let Some(found) = visit(next, graph, way, done) {
-                return Some(found);
-            }
-        }
-        way.pop();
-        None
-    }
-    let mut done = BTreeSet::new();
-    graph
-        .keys()
-        .find_map(|start| visit(start, graph, &mut Vec::new(), &mut done))
-        .unwrap_or_default()
-}
-
 /// Files of product code below a folder, without those of tests.
 pub(crate) fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -144,7 +114,7 @@ pub(crate) fn product(path: &Path) -> String {
     text[..end].to_owned()
 }
 
-/// The parts of a graph of which each reaches each, with more than one member.
+/// Circles of a graph: parts in which each member reaches each, itself too.
 fn circles(graph: &Graph) -> Vec<Vec<String>> {
     let reach = |from: &String| {
         let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
@@ -163,7 +133,7 @@ fn circles(graph: &Graph) -> Vec<Vec<String>> {
             .filter(|other| reached.get(*other).is_some_and(|back| back.contains(name)))
             .cloned()
             .collect();
-        if part.len() > 1 {
+        if !part.is_empty() {
             parts.insert(part);
         }
     }

@@ -4,7 +4,7 @@
 //! models, which are above it, use them too. The tests of `test_loop` compare the core with whole runs, so they use what is
 //! below.
 
-use super::{Graph, circle, graph, members, root};
+use super::{Graph, circles, graph, members, root};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Wings, from the first to the last.
@@ -109,12 +109,12 @@ fn a_wing_that_uses_one_below_it_is_found() {
         "run: source score",
     ]);
     assert_eq!(against_the_order(&wing_of, &straight), Vec::<String>::new());
-    assert_eq!(circle(&graph_of_wings(&wing_of, &straight)), Vec::<String>::new());
+    assert_eq!(circles(&graph_of_wings(&wing_of, &straight)), Vec::<Vec<String>>::new());
     // No circle of crates, and none the less a circle of wings.
     let twisted = graph(&["score: source", "source: wire", "run: score"]);
     assert_eq!(against_the_order(&wing_of, &twisted), ["score of results takes source of line"]);
-    assert_eq!(circle(&twisted), Vec::<String>::new());
-    assert_eq!(circle(&graph_of_wings(&wing_of, &twisted)), ["line", "results"]);
+    assert_eq!(circles(&twisted), Vec::<Vec<String>>::new());
+    assert_eq!(circles(&graph_of_wings(&wing_of, &twisted)), [["line", "results"]]);
 }
 
 /// A reader of the root manifest and one of `ls` see the same wings.

@@ -4,19 +4,18 @@ mod curves;
 pub mod fit;
 mod overview;
 mod parameters;
-mod stage;
 mod style;
 
 use super::follow::Follow;
 use super::plain;
 use fit::{elide, elide_path, wrap_styled};
 use octant_base::number::fixed;
+use overview::stage;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, LineGauge, Paragraph};
-use stage::stage;
 use style::{SOFT, STRONG};
 
 /// Page of the dashboard.

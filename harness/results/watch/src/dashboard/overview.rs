@@ -2,16 +2,16 @@
 
 use super::fit::{PanelRows, wrap, wrap_styled};
 use super::parameters;
-use super::stage::stage;
 use super::style::{ACTS, ALERT, GOOD, SOFT};
 use crate::follow::{Follow, Stage};
 use crate::plain;
 use crate::state::{FaultState, RunState, SolutionError};
-use octant_base::number::fixed;
+use octant_base::number::{fixed, significant};
 use octant_sample::Mode;
+use octant_verdict::Verdict;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
-use ratatui::style::Style;
+use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
 
@@ -297,4 +297,33 @@ fn draw_end(frame: &mut Frame<'_>, area: Rect, follow: &Follow) {
     }
     let block = Block::bordered().title(" Verdict ");
     frame.render_widget(Paragraph::new(lines).block(block), area);
+}
+
+/// Describes the progress of the run, with its speed or its verdict.
+pub(super) fn stage(follow: &Follow) -> (String, Style) {
+    let text = plain::stage(follow);
+    match &follow.stage {
+        Stage::Ended(summary) => {
+            let style = match summary.verdict {
+                Verdict::None => Style::new(),
+                Verdict::Pass => GOOD,
+                Verdict::Inconclusive => ACTS,
+                Verdict::Fail | Verdict::Error => ALERT,
+            };
+            (text, style.add_modifier(Modifier::BOLD))
+        }
+        Stage::BrokenOff => (text, ALERT),
+        Stage::Running => {
+            let speed = match follow.speed() {
+                _ if follow.state.about.by_clock => ", by the clock".to_owned(),
+                Some(speed) => format!(", {} times real time", significant(speed, 2)),
+                None => String::new(),
+            };
+            let left = follow.left_s().map_or_else(String::new, |left_s| {
+                format!(", {} left", plain::time((left_s * 1e9) as u64))
+            });
+            (format!("{text}{speed}{left}"), Style::new())
+        }
+        Stage::Starting | Stage::Recorded | Stage::Unjudged => (text, ACTS),
+    }
 }

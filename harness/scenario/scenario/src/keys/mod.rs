@@ -16,7 +16,6 @@ mod fmu;
 mod further;
 mod instrument;
 pub(crate) mod key_path;
-mod link;
 mod power;
 mod run;
 mod screening;
@@ -51,11 +50,10 @@ pub(crate) use further::{
 };
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use key_path::{key, keys_of};
-pub(crate) use link::LinkKeys;
 pub(crate) use power::PowerKeys;
 pub(crate) use run::{
-    DecisionKeys, EndpointKeys, EquipmentKeys, MotionKeys, MotionKind, RealtimeKeys, RecordKeys,
-    RequirementKeys, SCENARIO, ScenarioKeys,
+    DecisionKeys, EndpointKeys, EquipmentKeys, LinkKeys, MotionKeys, MotionKind, RealtimeKeys,
+    RecordKeys, RequirementKeys, SCENARIO, ScenarioKeys,
 };
 pub(crate) use screening::{GateKeys, ScreeningKeys};
 pub(crate) use source::{

@@ -5,7 +5,7 @@
 
 use super::definition::{Bounds, Default, Key, Kind, Section, Variants, key};
 use crate::complete::complete;
-use crate::error::{Place, Problem, ScenarioError};
+use crate::error::{FileProblems, Place, Problem};
 use crate::quantity::{Quantity, UnitDimension};
 use crate::read::reader::Reader;
 use octant_toml_tree::{Node, Table};
@@ -162,8 +162,8 @@ pub(crate) trait Keys: FromTable {
         file: &str,
         prepare: impl FnOnce(&mut Table, &mut Vec<Problem>),
         make: impl FnOnce(Self) -> Result<T, Problem>,
-    ) -> Result<T, ScenarioError> {
-        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+    ) -> Result<T, FileProblems> {
+        let with_file = |problems| FileProblems { file: file.to_owned(), problems };
         let mut document = octant_toml_tree::parse(text).map_err(with_file)?;
         let mut problems = Vec::new();
         prepare(&mut document, &mut problems);

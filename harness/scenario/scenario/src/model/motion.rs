@@ -16,6 +16,17 @@ pub enum MotionSpec {
     Dockside(DocksideSpec),
 }
 
+impl MotionSpec {
+    /// Mean heading of the case, rad.
+    #[must_use]
+    pub fn heading_rad(&self) -> f64 {
+        match self {
+            Self::Static(mean) => mean.heading_rad,
+            Self::Dockside(ship) => ship.mean.heading_rad,
+        }
+    }
+}
+
 /// Components of a moored ship's motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DocksideSpec {

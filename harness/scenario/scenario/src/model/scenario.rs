@@ -206,6 +206,12 @@ impl Scenario {
         matches!(estimator, Some(core::Estimator::Kalman(of)) if of.further != core::Further::default())
     }
 
+    /// Lists the methods that a run of the scenario has.
+    pub fn methods(&self) -> impl Iterator<Item = Method> + use<> {
+        let baseline = self.baseline.as_ref().map(|_| Method::Baseline);
+        std::iter::once(Method::Primary).chain(baseline)
+    }
+
     /// Makes the same scenario without its faults.
     #[must_use]
     pub fn without_faults(&self) -> Self {

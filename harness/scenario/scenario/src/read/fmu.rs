@@ -1,16 +1,17 @@
-//! Reads FMUs as source and as endpoint from `[source.fmu]` and `[endpoint.fmu]`.
+//! Reads FMUs as source and as endpoint from `[source.fmu]` and `[endpoint.fmu]`, and a core at the other end of a wire from
+//! `endpoint.uri` and `[endpoint.link]`.
 //!
 //! Settings and maps of variables are checked when the FMU is opened: a scenario is read without its
 //! files.
 
-use super::live;
 use super::reader::Reader;
 use crate::error::Problem;
 use crate::keys::{
     At, ENDPOINT_MAP, EndpointKeys, FmuKeys, Kind, Raw, SOURCE_MAP, Section, SourceKeys,
 };
-use crate::model::{Code, EndpointSpec, EntryPlace, FileName, Fmu, Mapped};
+use crate::model::{Code, EndpointSpec, EntryPlace, FileName, Fmu, Live, Mapped};
 use crate::ports;
+use octant_link::Uri;
 use octant_sample::Mode;
 
 /// Reads `[source.fmu]`.
@@ -64,9 +65,7 @@ pub(super) fn endpoint(
             fmu.modes = of_fmu.modes.as_ref().map(modes).unwrap_or_default();
             Ok(EndpointSpec::Fmu(Box::new(fmu)))
         }
-        Some(_) if octant_link::Uri::is_one(uri) => {
-            Ok(EndpointSpec::Live(Box::new(live::live(keys)?)))
-        }
+        Some(_) if octant_link::Uri::is_one(uri) => Ok(EndpointSpec::Live(Box::new(live(keys)?))),
         _ => {
             Err(keys.uri.problem(format!("found {uri:?}, expected in-process, fmu:FILE or a port")))
         }
@@ -130,4 +129,38 @@ fn modes(modes: &Raw) -> Vec<(Mode, Vec<Code>)> {
         Some((mode, codes))
     };
     Mode::ALL.into_iter().filter_map(codes).collect()
+}
+
+/// Reads a port and `[endpoint.link]`.
+pub(super) fn live(keys: &EndpointKeys) -> Result<Live, Problem> {
+    let uri: Uri = (keys.uri.parse())
+        .map_err(|error: octant_link::uri::UriError| keys.uri.problem(error.to_string()))?;
+    if let Uri::Pty { .. } = uri {
+        let message = "found pty:, expected serial: with the terminal that octant serve announces";
+        return Err(keys.uri.problem(message));
+    }
+    if let Uri::Stdio = uri {
+        let message = "found stdio:, expected exec: with the program whose input and output it is";
+        return Err(keys.uri.problem(message));
+    }
+    if matches!(&uri, Uri::Tcp(tcp) if tcp.listen) {
+        let message = format!(
+            "found {uri}, expected tcp:HOST:PORT alone: listen is for an instrument that connects to this host"
+        );
+        return Err(keys.uri.problem(message));
+    }
+    let link = keys.link.as_ref().ok_or_else(|| keys.uri.problem("endpoint.link is missing"))?;
+    let live = Live {
+        uri,
+        hello_s: link.hello,
+        answer_s: link.answer,
+        repeat_s: *link.repeat,
+        reconnect_s: *link.reconnect,
+    };
+    if live.repeat_s > live.answer_s {
+        let message = "an answer would be given up before it is asked for again; expected no more \
+                       than endpoint.link.answer";
+        return Err(link.repeat.problem(message));
+    }
+    Ok(live)
 }

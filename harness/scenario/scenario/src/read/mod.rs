@@ -8,7 +8,6 @@ mod fmu;
 mod further;
 mod instrument;
 mod instrument_port;
-mod live;
 mod power;
 mod procedure;
 pub(crate) mod reader;

@@ -71,8 +71,8 @@ pub(super) fn check_names(
     }
     let at = match &first.name.place {
         Place::File { line, column } => format!(" at line {line}, column {column}"),
-        Place::Argument(argument) => format!(" of --set {argument}"),
-        Place::Fire(_) | Place::Unread | Place::Default => String::new(),
+        Place::Argument(argument) => format!(" of {argument}"),
+        Place::Unread | Place::Default => String::new(),
     };
     Err(second.name.problem(format!(
         "found {name:?}, which {}{at} gives to other stops; expected another name",

@@ -1,7 +1,7 @@
 //! Requirements on a system of FMUs: reading of everything that needs no system.
 
 use super::faults::connection::Given;
-use crate::error::{Place, Problem, ScenarioError};
+use crate::error::{FileProblems, Place, Problem};
 use crate::keys::{Keys, RequirementKeys, SystemRequirementsKeys};
 use octant_verdict::Comparison;
 
@@ -42,10 +42,7 @@ impl SystemRequirement {
 ///
 /// # Errors
 /// If it isn't TOML or not such a list: every problem with its place.
-pub fn system_requirements(
-    text: &str,
-    file: &str,
-) -> Result<Vec<SystemRequirement>, ScenarioError> {
+pub fn system_requirements(text: &str, file: &str) -> Result<Vec<SystemRequirement>, FileProblems> {
     SystemRequirementsKeys::parse(
         text,
         file,

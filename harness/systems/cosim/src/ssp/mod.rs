@@ -21,7 +21,6 @@ pub mod package;
 pub mod parameters;
 mod parts;
 pub mod structure;
-mod warnings;
 mod xml;
 
 use std::fmt;

@@ -1,7 +1,7 @@
 //! Folder of a system structure: a plain folder, or unpacked from an `.ssp`.
 
 use super::SspError;
-use super::warnings::SspWarnings;
+use super::xml::SspWarnings;
 use octant_fmu_host::archive::{Archive, Unpacked};
 use std::path::{Path, PathBuf};
 

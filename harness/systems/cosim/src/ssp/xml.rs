@@ -1,10 +1,10 @@
-//! Reads elements and attributes of a file, with their lines.
+//! Reads elements and attributes of a file, with their lines; deviations that have one meaning all the same are warnings.
 
 use super::SspError;
-use super::warnings::SspWarnings;
 use octant_base::names::suggestion;
 use octant_fmu_host::description::{BaseUnit, units};
 use roxmltree::{Document, Node, ParsingOptions};
+use std::cell::RefCell;
 
 /// Namespaces of the standard, the same for 1.0 and 2.0.
 pub(super) const SSD: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
@@ -270,5 +270,35 @@ pub(super) fn boolean(text: &str) -> Option<bool> {
         "true" | "1" => Some(true),
         "false" | "0" => Some(false),
         _ => None,
+    }
+}
+
+/// Warnings about the files of a structure, each once.
+#[derive(Debug, Default)]
+pub(super) struct SspWarnings {
+    all: RefCell<Vec<String>>,
+    /// Files and units in them that were warned about.
+    units: RefCell<Vec<(String, String)>>,
+}
+
+impl SspWarnings {
+    /// Adds a warning in the form of an error, whose message says what is read instead.
+    pub(super) fn add(&self, warning: &SspError) {
+        self.all.borrow_mut().push(warning.to_string());
+    }
+
+    /// Adds a warning about a unit, if it is the first of the file about this unit.
+    pub(super) fn unit(&self, unit: &str, warning: &SspError) {
+        let place = (warning.file.clone(), unit.to_owned());
+        if !self.units.borrow().contains(&place) {
+            self.units.borrow_mut().push(place);
+            self.add(warning);
+        }
+    }
+
+    /// Takes all warnings, in their order.
+    pub(super) fn take(&self) -> Vec<String> {
+        self.units.take();
+        self.all.take()
     }
 }

@@ -3,7 +3,7 @@
 use crate::catalogue::{
     Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
 };
-use crate::kinds::span::samples;
+use crate::kinds::parameters::samples;
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::station::FLIGHT_MAX;

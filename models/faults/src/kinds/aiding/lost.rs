@@ -1,7 +1,8 @@
 //! References that are lost.
 
 use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts};
-use crate::kinds::chance::{self, LOSS};
+use crate::kinds::parameters;
+use crate::kinds::parameters::LOSS;
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
@@ -27,7 +28,7 @@ pub(super) static AIDING_LOST: FaultKind = FaultKind {
 };
 
 fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
-    let (loss, stream) = (chance::loss(values)?, setup.stream("loss"));
+    let (loss, stream) = (parameters::loss(values)?, setup.stream("loss"));
     Ok(FaultRule::Samples(Box::new(AidingLost { loss, stream })))
 }
 

@@ -5,8 +5,7 @@ use crate::catalogue::{
 };
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::channel::{gyros, pair, read};
-use crate::kinds::onset::Onset;
-use crate::rule::{Context, FaultRule, SampleRule};
+use crate::rule::{Context, FaultRule, Onset, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;

@@ -4,9 +4,8 @@ use crate::catalogue::{
     Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
 };
 use crate::kinds::added::{Adder, counts_per_si};
-use crate::kinds::onset::Onset;
-use crate::kinds::six::Six;
-use crate::rule::{Context, FaultRule, SampleRule};
+use crate::kinds::parameters::Six;
+use crate::rule::{Context, FaultRule, Onset, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;

@@ -5,8 +5,7 @@ use crate::catalogue::{
 };
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{read, write_saturating};
-use crate::kinds::onset::Onset;
-use crate::rule::{Context, FaultRule, SampleRule};
+use crate::rule::{Context, FaultRule, Onset, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;

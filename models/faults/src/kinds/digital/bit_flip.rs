@@ -4,7 +4,7 @@ use crate::catalogue::{
     Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
 };
 use crate::kinds::channel::{read, write};
-use crate::kinds::six::Six;
+use crate::kinds::parameters::Six;
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};

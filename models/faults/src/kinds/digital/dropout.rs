@@ -4,8 +4,7 @@ use crate::catalogue::{
     Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
 };
 use crate::kinds::channel::{counts, write};
-use crate::kinds::onset::Onset;
-use crate::rule::{Context, FaultRule, SampleRule};
+use crate::rule::{Context, FaultRule, Onset, SampleRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;

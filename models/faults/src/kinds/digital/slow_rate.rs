@@ -2,8 +2,7 @@
 
 use crate::catalogue::{Acts, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::kinds::channel::{counts, read, write, write_saturating};
-use crate::kinds::onset::Onset;
-use crate::rule::{Context, FaultRule, SampleRule};
+use crate::rule::{Context, FaultRule, Onset, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;

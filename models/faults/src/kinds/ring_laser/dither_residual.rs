@@ -5,9 +5,8 @@ use crate::catalogue::{
 };
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::channel::gyros;
-use crate::kinds::onset::Onset;
-use crate::kinds::six::Six;
-use crate::rule::{Context, FaultRule, SampleRule};
+use crate::kinds::parameters::Six;
+use crate::rule::{Context, FaultRule, Onset, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;

@@ -1,7 +1,8 @@
 //! Samples that are lost.
 
 use crate::catalogue::{Acts, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
-use crate::kinds::chance::{self, LOSS};
+use crate::kinds::parameters;
+use crate::kinds::parameters::LOSS;
 use crate::rule::{Context, DeliveryRule, FaultRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
@@ -43,7 +44,7 @@ pub(super) static DROPOUT: FaultKind = FaultKind {
 
 fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     Ok(FaultRule::Delivery(Box::new(Dropout {
-        loss: chance::loss(values)?,
+        loss: parameters::loss(values)?,
         keeps_aiding: values.choice("aiding")? == "kept",
         stream: setup.stream("loss"),
         kept: None,

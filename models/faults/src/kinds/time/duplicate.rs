@@ -1,13 +1,12 @@
 //! Samples that are delivered more than once.
 
-use super::queue::check_queue;
 use crate::catalogue::{
     Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
 };
-use crate::kinds::span::samples;
+use crate::kinds::parameters::samples;
 use crate::rule::{Context, DeliveryRule, FaultRule};
 use crate::setup::{FaultBuildError, Setup};
-use crate::station::FLIGHT_MAX;
+use crate::station::{FLIGHT_MAX, check_queue};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;

@@ -6,7 +6,6 @@ mod duplicate;
 mod jitter;
 mod late;
 mod offset;
-mod queue;
 mod rate;
 mod reorder;
 mod sequence;

@@ -82,7 +82,8 @@ enum Promise {
     Kept,
     /// Violated, but the ring had no room yet for the message.
     Broken(u64, Broke),
-    Told,
+    /// Violated, and the message is in the ring.
+    Reported,
 }
 
 impl<'a> Frames<'a> {
@@ -194,7 +195,7 @@ impl<'a> Frames<'a> {
         if let Promise::Broken(step_ns, broke) = self.broke
             && self.ring.push(Entry::Broke { step_ns, broke }).is_ok()
         {
-            self.broke = Promise::Told;
+            self.broke = Promise::Reported;
         }
         let is_in = self.ring.push(entry).is_ok();
         if !is_in {
@@ -237,7 +238,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
         }
         // Once the keeper of the records has been told.
         let lost =
-            self.broke == Promise::Told && self.control.stop_when_lost.load(Ordering::Relaxed);
+            self.broke == Promise::Reported && self.control.stop_when_lost.load(Ordering::Relaxed);
         Ok(self.control.look(done) || lost || self.stop.load(Ordering::Relaxed))
     }
 

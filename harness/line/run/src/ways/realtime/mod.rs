@@ -13,7 +13,7 @@ mod frames;
 mod keep;
 
 use self::frames::{Found, Frames, Limits};
-use crate::bench::kept::TimeKeeping;
+use crate::bench::ended::TimeKeeping;
 use crate::bench::steps::NoFaults;
 use crate::bench::{Bench, Records};
 use octant_endpoint::{Endpoint, RemoteClock};

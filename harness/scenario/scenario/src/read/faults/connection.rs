@@ -4,7 +4,7 @@ use super::grid::{Grid, Waiting, check_chains};
 use super::named;
 use super::value::value;
 use crate::arguments::fire;
-use crate::error::{Place, Problem, ScenarioError};
+use crate::error::{FileProblems, Place, Problem};
 use crate::keys::{ConnectionFaultKeys, ConnectionsKeys, FromTable, Keys, Raw, TriggerKeys};
 use crate::read::reader::Reader;
 use octant_faults::Values;
@@ -76,7 +76,7 @@ pub fn connection_faults(
     step_s: f64,
     steps: u64,
     fires: &[String],
-) -> Result<Vec<ConnectionFault>, ScenarioError> {
+) -> Result<Vec<ConnectionFault>, FileProblems> {
     let fire_all = |table: &mut Table, problems: &mut Vec<Problem>| {
         problems.extend(fires.iter().filter_map(|argument| fire(table, argument).err()));
     };
@@ -200,8 +200,8 @@ fn earliest(all: &[ConnectionFault], index: usize, depth: usize) -> Option<u64> 
 ///
 /// # Errors
 /// If the file can't be read.
-pub fn text_of(path: &Path) -> Result<String, ScenarioError> {
-    std::fs::read_to_string(path).map_err(|error| ScenarioError {
+pub fn text_of(path: &Path) -> Result<String, FileProblems> {
+    std::fs::read_to_string(path).map_err(|error| FileProblems {
         file: path.display().to_string(),
         problems: vec![Problem {
             place: Place::Unread,
