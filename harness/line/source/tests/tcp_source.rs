@@ -19,7 +19,7 @@ fn open(uri: &str, speaks: Speaks, folder: &Path) -> Result<LiveSource, SourceEr
         pulses: None,
         known_stamps: None,
     };
-    LiveSource::open(&instrument, folder, PERIOD_NS, None)
+    LiveSource::open(&instrument, folder, 200.0, None)
 }
 
 /// The server of an instrument, and a source that is connected to it.

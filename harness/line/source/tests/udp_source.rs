@@ -18,7 +18,7 @@ fn open(speaks: Speaks, folder: &Path) -> (LiveSource, UdpSocket) {
         pulses: None,
         known_stamps: None,
     };
-    let source = LiveSource::open(&instrument, folder, PERIOD_NS, None).unwrap();
+    let source = LiveSource::open(&instrument, folder, 200.0, None).unwrap();
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.connect(source.reached_at().strip_prefix("udp:").unwrap()).unwrap();
     (source, socket)
