@@ -230,6 +230,13 @@ impl Cursor {
         self.arrival_tick
     }
 
+    /// Sample at whose end the present dwell ends.
+    #[must_use]
+    #[inline]
+    pub fn departure_tick(&self) -> u64 {
+        self.departure_tick
+    }
+
     /// Start of the present dwell, s since the start of the phase.
     #[must_use]
     pub fn arrival_s(&self) -> f64 {

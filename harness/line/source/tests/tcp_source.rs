@@ -1,6 +1,6 @@
 //! An instrument over TCP as a source: a server of the test's own, which closes the connection.
 
-use super::unit_frames::{FRAME, PERIOD_NS, all, check, frame};
+use super::unit_frames::{FRAME, all, check, frame};
 use octant_instruments::{Axes, Protocol};
 use octant_sample::{GimbalCommand, Sample};
 use octant_scenario::{DescriptionChoice, FileName, Instrument, Speaks};

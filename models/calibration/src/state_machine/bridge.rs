@@ -290,15 +290,17 @@ impl Core {
     /// well enough.
     #[cold]
     pub(super) fn bridge_known(&mut self, missing: u64, sample: &Sample) -> bool {
+        let has_encoders = !sample.status.contains(Status::GIMBAL_INVALID);
         if !self.config.screening.bridging
             || !self.knows_its_motion()
             || self.filter().is_none()
-            || sample.status.contains(Status::GIMBAL_INVALID)
+            || !(has_encoders || self.dwells_over(missing))
         {
             return false;
         }
+        let from = self.bridge.gimbal;
         // Gimbal angles at the start of this sample's interval: its own turn is taken back.
-        let (from, to) = (self.bridge.gimbal, self.before(sample));
+        let to = if has_encoders { self.before(sample) } else { from };
         self.begin_stretch();
         let channels = GYROS | ACCELEROMETERS;
         // The turns of both gimbals and of the Earth don't commute. A gap may be long, but it
@@ -324,6 +326,13 @@ impl Core {
         self.account();
         self.bridge.open = 0;
         true
+    }
+
+    /// Returns whether the procedure has the gimbals at rest now and over so many samples more.
+    fn dwells_over(&self, missing: u64) -> bool {
+        let until = self.phase_tick().saturating_add(missing);
+        let dwells = |departure_tick| !self.gimbals_may_move() && until < departure_tick;
+        self.cursor.as_ref().is_none_or(|cursor| dwells(cursor.departure_tick()))
     }
 
     /// Encoder angles at the start of this sample's interval, from the gyros' turn in it.

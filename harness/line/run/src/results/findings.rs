@@ -1,6 +1,7 @@
 //! Findings besides requirements that affect the verdict of a run: errors of unit and bench, and
 //! missing evidence.
 
+use super::clock_doubt::clock_doubt;
 use super::method::{MethodRun, planned_of};
 use crate::bench::ended::Ended;
 use octant_account::Account;
@@ -60,6 +61,9 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
     reasons.extend(run.bench.cut_short.iter().map(|cut_short| format!("{cut_short}{place}")));
     let doubts = run.bench.inputs.iter().flat_map(Account::doubts);
     reasons.extend(doubts.map(|doubt| format!("{doubt}{place}")));
+    let calibration = run.calibration.as_ref().filter(|c| c.refused.is_none());
+    let clocks = run.bench.inputs.iter().filter_map(|input| clock_doubt(input, calibration?));
+    reasons.extend(clocks.map(|doubt| format!("{doubt}{place}")));
     let pacing = run.bench.kept.as_ref().map(|kept| &kept.pacing);
     reasons.extend(pacing.map(|pacing| too_late(limits, pacing)).unwrap_or_default());
     let inconclusive = |reason| Finding::of_bench(Verdict::Inconclusive, reason);

@@ -2,6 +2,7 @@
 
 mod aligned;
 pub mod assemble;
+mod clock_doubt;
 pub mod difference;
 pub mod findings;
 pub(crate) mod method;
