@@ -14,6 +14,9 @@ use octant_scenario::recorded::{
 };
 use std::path::Path;
 
+/// Number of rows whose interval is looked at, for a table without a rate.
+const PROBED: usize = 1000;
+
 /// Streams delimited text.
 ///
 /// The increment of an interval is its rate times the interval by the [fitted](octant_instruments::timeline) stamps; the
@@ -71,6 +74,22 @@ impl TextSource {
             rows: 0,
             temperatures: TemperatureCheck::default(),
         })
+    }
+
+    /// Median interval of the first stamps of a file, s, for a table whose rate nobody gave; `None` with fewer than two rows.
+    ///
+    /// # Errors
+    /// If the file can't be read or has not the columns named.
+    pub fn interval_s(path: &Path, mapping: &TextMapping) -> Result<Option<f64>, SourceError> {
+        let mut file = File::open(path, mapping, true, true)?;
+        let mut stamps = Vec::with_capacity(PROBED);
+        while stamps.len() < PROBED && file.rows.advance()? {
+            stamps.extend(file.time_ns()?);
+        }
+        let apart = stamps.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));
+        let mut apart: Vec<u64> = apart.collect();
+        apart.sort_unstable();
+        Ok(apart.get(apart.len() / 2).map(|ns| *ns as f64 * 1e-9))
     }
 
     /// Number of samples so far in which at least one count saturated.

@@ -24,8 +24,6 @@ pub(crate) fn derive(document: &mut Table) {
     if document.at(key!(procedure.calibration)).is_some() {
         calibration(document);
     }
-    let as_text = text(document, key!(source.uri)).is_some_and(|uri| uri.starts_with("text:"));
-    set(document, key!(screening.jumps), if as_text { "off" } else { "on" });
     let dockside = text(document, key!(motion.kind)) == Some("dockside");
     let [still, moving] = by_case::DRIFT_SIGMAS;
     set(document, key!(screening.drift), &format!("{:?}", if dockside { moving } else { still }));

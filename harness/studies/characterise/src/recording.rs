@@ -6,9 +6,10 @@ use octant_recorder::reader::Recording;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::file_names::FileNames;
+use octant_scenario::recorded::TextFiles;
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Scenario, SourceSpec};
-use octant_source::{AnySource, Epoch, Source};
+use octant_source::{AnySource, Epoch, Source, TextSource};
 use std::path::Path;
 
 /// Scenario of a recording that brings none, of a file of `octant export` or of a recording of Octant.
@@ -91,7 +92,8 @@ impl RestingRecording {
         let names = if of_table { FileNames(None) } else { FileNames::of(&scenario.source) };
         let mut recording = Self { name: name.clone(), scenario: unsplit(scenario)?, names };
         recording.refuse_others()?;
-        let found_s = recording.probe().map_err(|error| match error {
+        let probed = if of_table { recording.probe_table() } else { recording.probe() };
+        let found_s = probed.map_err(|error| match error {
             CharacteriseError::Source(error) if of_table && path.exists() => fail(format!(
                 "{error}; without --scenario, which names its columns, a table has to be the samples of octant export"
             )),
@@ -178,6 +180,17 @@ impl RestingRecording {
             name: self.name.clone(),
             reason: "its source is the plant, expected a recording".to_owned(),
         })
+    }
+
+    /// Median interval at the start of a table whose rate isn't known yet, s.
+    fn probe_table(&self) -> Result<f64, CharacteriseError> {
+        let SourceSpec::Text(mapping) = &self.scenario.source else { return self.probe() };
+        let TextFiles::One(path) = &mapping.files else { return self.probe() };
+        match TextSource::interval_s(path, mapping)? {
+            Some(interval_s) if interval_s > 0.0 => Ok(interval_s),
+            // Too few rows, or none that follow each other: the samples say so.
+            _ => self.probe(),
+        }
     }
 
     /// Median interval at the start, s.

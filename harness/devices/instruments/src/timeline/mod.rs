@@ -229,7 +229,7 @@ impl Timeline {
             return Err(Misplaced::Rate {
                 found_hz: 1e9 / spacing_ns,
                 expected_hz: 1e9 / period_ns,
-                changed: true,
+                changed: self.tally.placed >= FEW,
             });
         }
         let (mut least, mut most, mut sum, mut n) = (off_ns, off_ns, off_ns, 1.0);

@@ -13,7 +13,7 @@ keys! {
             "Innovation gate.";
         stuck_samples: Option<u32> = or_text!("off", "no test", Kind::Integer(2, 1_000_000)), "8",
             "Identical counts in a row that make a channel stuck.";
-        jumps: bool = on_off(), derived("recordings as text: \"off\"; else \"on\""),
+        jumps: bool = on_off(), "on",
             "Samples that jump as no motion of turntable and base can are not believed.";
         bridging: bool = on_off(), "on",
             "Samples missing, invalid, stuck or not believed are bridged by what is known of the motion; \
