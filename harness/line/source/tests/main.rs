@@ -10,6 +10,7 @@ mod common {
 #[cfg(feature = "can")]
 mod can_source;
 mod counting;
+mod described_files;
 mod reference_rows;
 mod replay;
 mod tcp_source;

@@ -3,7 +3,7 @@
 use super::arrival::{Arrival, ArrivalClock};
 use super::bus::Bus;
 use crate::SourceError;
-use crate::described::decoder;
+use crate::described::port_decoder;
 use crate::traffic::traffic;
 use octant_account::Account;
 use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingCounters, ReadingDefect};
@@ -62,7 +62,7 @@ impl Feed {
             Speaks::Can(messages) => {
                 return Ok(Self::Bus(Box::new(Bus::open(uri, messages, folder)?)));
             }
-            line => decoder(line, instrument.count, folder)?,
+            line => port_decoder(line, instrument.count, folder)?,
         };
         let decoder = decoder.ok_or_else(|| gone("it speaks no protocol of a line".to_owned()))?;
         let port = match port::open_instrument(uri) {
@@ -225,7 +225,10 @@ impl Line {
                         Some(reading) => return Some(reading),
                         None => continue,
                     },
-                    None => self.connection.is_new = false,
+                    None => {
+                        self.connection.is_new = false;
+                        self.decoder.begin_anywhere();
+                    }
                 }
             }
             let mut bytes = &self.buffer[self.rest.clone()];
