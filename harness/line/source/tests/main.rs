@@ -11,6 +11,7 @@ mod common {
 mod can_source;
 mod counting;
 mod described_files;
+mod mcap_dialects;
 mod reference_rows;
 mod replay;
 mod tcp_source;
