@@ -10,6 +10,8 @@ use std::io::Write as _;
 use std::net::TcpListener;
 use std::path::Path;
 
+const RATE_HZ: f64 = 200.0;
+
 const FIELDS: [&str; 6] = ["gyro x", "gyro y", "gyro z", "accel x", "accel y", "accel z"];
 
 /// Description of doubles behind a header of 100 bytes: six increments and the time.
@@ -52,7 +54,7 @@ fn log(folder: &Path, description: &str, bytes: &[u8]) -> LogSource {
     std::fs::write(&path, bytes).unwrap();
     let (file, speaks) = (FileName("unit.bin".to_owned()), speaks(folder, description));
     let log = InstrumentLog { file, speaks, count: None, axes: Axes::SAME };
-    LogSource::open(&path, &log, folder, PERIOD_NS).unwrap()
+    LogSource::open(&path, &log, folder, RATE_HZ).unwrap()
 }
 
 /// Samples of a file until its end or its error.
@@ -93,7 +95,7 @@ fn records_of_a_file_are_read_and_a_wrong_length_names_the_record() {
     for (length, expected) in [
         (60, "unit.bin: record 2: "),
         (57, "unit.bin: record 2: "),
-        (112, "unit.bin: readings are 10.0000 ms apart"),
+        (112, "unit.bin: readings come at 100 Hz by their stamps, expected 200 Hz"),
     ] {
         let (_, error) = read(&mut log(folder.path(), &records(length), &bytes));
         let error = error.unwrap();
@@ -185,7 +187,7 @@ fn port(uri: &str, folder: &Path, description: &str) -> Result<LiveSource, Sourc
         pulses: None,
         known_stamps: None,
     };
-    LiveSource::open(&instrument, folder, PERIOD_NS, None)
+    LiveSource::open(&instrument, folder, RATE_HZ, None)
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! An instrument over UDP as a source: frames in any pieces, and pieces that are lost.
 
-use super::unit_frames::{FRAME, PERIOD_NS, all, check, frame};
+use super::unit_frames::{FRAME, all, check, frame};
 use octant_instruments::{Axes, Protocol};
 use octant_sample::GimbalCommand;
 use octant_scenario::{DescriptionChoice, FileName, Instrument, Speaks};

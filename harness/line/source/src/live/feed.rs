@@ -5,7 +5,7 @@ use super::bus::Bus;
 use crate::SourceError;
 use crate::described::port_decoder;
 use crate::traffic::traffic;
-use octant_account::Account;
+use octant_account::{Account, AccountEntry};
 use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingCounters, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
@@ -133,7 +133,12 @@ impl Feed {
     /// Adds the losses on a bus to an account.
     pub(super) fn losses(&self, account: Account) -> Account {
         match self {
-            Self::Line(_) => account,
+            Self::Line(line) => {
+                let again = line.connection.made.saturating_sub(1);
+                let kind =
+                    "connections that were closed and made again: what came meanwhile is lost";
+                account.note(AccountEntry::new(again, kind))
+            }
             Self::Bus(bus) => bus.losses(account),
         }
     }
