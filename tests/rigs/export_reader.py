@@ -3,7 +3,7 @@
 
 Usage: python tests/rigs/export_reader.py RECORDING FOLDER
 
-FOLDER holds csv/, parquet/, mat, kml and rosbag-mcap of `octant export`. Needs the packages of
+FOLDER holds csv/, parquet/, mat, kml and rosbag-mcap.mcap of `octant export`. Needs the packages of
 tests/rigs/requirements-export.txt. Exit status: 0 as expected, 1 with the assertion that doesn't hold.
 """
 
@@ -20,6 +20,8 @@ import scipy.io
 from lxml import etree
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from rosbags.highlevel import AnyReader
+from rosbags.interfaces import MessageDefinitionFormat
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 LSB = {"delta_theta": 2.0**-36, "delta_velocity": 2.0**-30}
@@ -141,54 +143,93 @@ def check_kml(path, topics):
         print(f"kml: {name} with {len(points)} points")
 
 
+def check_standard(name, store, types):
+    """Definitions in the file of standard messages are those of ROS 2."""
+    for part, (_, fields) in types.items():
+        if not part.startswith("octant_msgs/"):
+            standard = [(field, kind) for field, kind in store.fielddefs[part][1]]
+            assert fields == standard, f"{name}, {part}: {fields}, the standard has {standard}"
+
+
 def check_rosbag(path, topics):
-    store = get_typestore(Stores.ROS2_HUMBLE)
-    counts, layout = collections.Counter(), set()
-    ours = {}
+    """Opens the file as a bag of ROS 2 with rosbags, which refuses every encoding but CDR."""
+    standard = get_typestore(Stores.ROS2_HUMBLE)
+    counts, last = collections.Counter(), {}
+    messages = collections.defaultdict(list)
+    with AnyReader([path]) as bag:
+        for connection in bag.connections:
+            assert connection.msgdef.format == MessageDefinitionFormat.MSG, connection
+            assert connection.ext.serialization_format == "cdr", connection
+            types = get_types_from_msg(connection.msgdef.data, connection.msgtype)
+            check_standard(connection.topic, standard, types)
+        for connection, time_ns, data in bag.messages():
+            counts[connection.topic] += 1
+            # Types of the file itself, so that messages of no package are read too.
+            message = bag.deserialize(data, connection.msgtype)
+            stamp = message.header.stamp
+            assert stamp.sec * 10**9 + stamp.nanosec == time_ns, connection.topic
+            if connection.msgtype in standard.fielddefs:
+                again = standard.serialize_cdr(message, connection.msgtype)
+                assert bytes(again) == bytes(data), f"{connection.topic}: {connection.msgtype}"
+            messages[connection.topic].append(message)
+            last[connection.topic] = message
+    # Another reader of the same file.
     with open(path, "rb") as file:
-        reader = make_reader(file)
-        factory = DecoderFactory()
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
         assert reader.get_header().profile == "ros2"
-        for schema, channel, message in reader.iter_messages():
-            counts[channel.topic] += 1
-            if schema.encoding != "ros2msg":
-                layout.add(channel.topic)
-                fields = json.loads(schema.data)["properties"]
-                assert set(json.loads(message.data)) <= set(fields), channel.topic
-                continue
-            decoded = factory.decoder_for(channel.message_encoding, schema)(message.data)
-            if schema.name not in ours:
-                text = schema.data.decode()
-                ours[schema.name] = types = get_types_from_msg(text, schema.name)
-                for name, (_, fields) in types.items():
-                    standard = [(f, kind) for f, kind in store.fielddefs[name][1]]
-                    assert fields == standard, f"{name}: {fields}, the standard has {standard}"
-            standard = store.deserialize_cdr(message.data, schema.name)
-            stamp = standard.header.stamp
-            assert stamp.sec * 10**9 + stamp.nanosec == message.log_time
-            assert standard.header.frame_id == decoded.header.frame_id
-            if channel.topic == "/imu/data":
-                last_imu = standard
-            if channel.topic == "/fix":
-                assert standard.latitude == decoded.latitude
-                last_fix = standard
+        decoded = collections.Counter(channel.topic for _, channel, _, _ in reader.iter_decoded_messages())
+    assert decoded == counts, (decoded, counts)
     assert counts["/imu/data"] == len(topics["/imu"]), counts
-    assert counts["/fix"] == len(topics["/output"]), counts
+    assert counts["/fix"] == counts["/octant/state"] == len(topics["/output"]), counts
     output, sample = topics["/output"][-1][1], topics["/imu"][-1][1]
-    assert last_fix.latitude == math.degrees(output.latitude_rad)
+    assert last["/fix"].latitude == math.degrees(output.latitude_rad)
     rate = 200.0
+    turned = last["/imu/data"].angular_velocity
     near(
-        [last_imu.angular_velocity.x, last_imu.angular_velocity.y, last_imu.angular_velocity.z],
+        [turned.x, turned.y, turned.z],
         [sample.delta_theta[i] * LSB["delta_theta"] * rate * sign for i, sign in enumerate((1, -1, -1))],
         "angular velocity",
     )
-    q = last_imu.orientation
+    q = last["/imu/data"].orientation
     assert abs(q.x**2 + q.y**2 + q.z**2 + q.w**2 - 1) < 1e-9
     for topic in ("/error/position", "/error/attitude", "/truth/fix", "/velocity"):
         assert counts[topic] > 0, topic
-    assert layout >= {"/octant/state", "/octant/error", "/octant/parameters", "/octant/gimbals", "/octant/nis"}
+    check_own(messages, topics)
     print("rosbag-mcap:", ", ".join(f"{topic} {count}" for topic, count in sorted(counts.items())))
     return counts
+
+
+def check_own(messages, topics):
+    """Messages of octant_msgs, against the recording."""
+    outputs = [m for _, m in topics["/output"]]
+    states = messages["/octant/state"]
+    near([m.time_s for m in states], [t for t, _ in topics["/output"]], "state: times")
+    near([m.mode_number for m in states], [m.mode for m in outputs], "state: mode")
+    near([m.stop for m in states], [m.stop + 1 for m in outputs], "state: stop")
+    assert [m.moving for m in states] == [bool(m.moving) for m in outputs], "state: moving"
+    names = {0: "aligning", 1: "calibrating", 2: "refused", 3: "navigating", 4: "done"}
+    assert all(m.mode == names[m.mode_number] for m in states), "state: names"
+    assert all(isinstance(m.health, list) and (not m.health_bits) == (not m.health) for m in states), "state: health"
+    per_unit = math.pi / 180 / 3600
+    near(
+        [m.gyro_bias_z.value for m in messages["/octant/parameters"]],
+        [m.gyro_bias_z / per_unit for _, m in topics["/parameters"]],
+        "parameters",
+    )
+    sigma = [m.sigma_gyro_bias_z / per_unit for _, m in topics["/parameters"]]
+    found = [m.gyro_bias_z.sigma for m in messages["/octant/parameters"]]
+    near(found, [s if s > 0 else math.nan for s in sigma], "sigma")
+    truth = {t: m for t, m in topics["/truth"]}
+    errors = [
+        (m.latitude_rad - truth[t].latitude_rad) * 180 * 60 / math.pi
+        for t, m in topics["/output"]
+        if t in truth and m.mode in (1, 3, 4)
+    ]
+    found = [m.latitude_arcmin for m in messages["/octant/error"]]
+    assert len(errors) == len(found) > 100, (len(errors), len(found))
+    assert max(abs(a - b) for a, b in zip(errors, found, strict=True)) < 1e-9
+    armed = messages["/octant/faults"][0]
+    assert (armed.armed, armed.fired, armed.acting, armed.faults) == (0, 0, 0, []), armed
 
 
 def check_layouts(counts):
@@ -208,7 +249,7 @@ def main():
     check_tables(topics, read_parquet(folder / "parquet"), "parquet")
     check_tables(topics, read_mat(folder / "mat"), "mat")
     check_kml(folder / "kml", topics)
-    check_layouts(check_rosbag(folder / "rosbag-mcap", topics))
+    check_layouts(check_rosbag(folder / "rosbag-mcap.mcap", topics))
 
 
 if __name__ == "__main__":

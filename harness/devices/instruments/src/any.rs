@@ -2,7 +2,7 @@
 
 use super::framing::ProtocolFacts;
 use crate::Reading;
-use crate::described::DescribedDecoder;
+use crate::described::{DescribedDecoder, LinesDecoder, RecordsDecoder};
 use crate::encoding::CannotCarry;
 use crate::framing::{FramingEvent, ReadingCounters};
 use crate::novatel::{CountScale, NovAtel, NovatelDecoder};
@@ -40,6 +40,10 @@ macro_rules! protocols {
             $(#[doc = concat!("[`crate::", stringify!($module), "`].")] $variant(crate::$module::$decoder),)+
             /// [`crate::described`], which no [`Protocol`] names: it needs a description.
             Described(DescribedDecoder),
+            /// Records of one length, likewise.
+            Records(RecordsDecoder),
+            /// Lines of text, likewise.
+            Lines(LinesDecoder),
         }
 
         impl AnyDecoder {
@@ -58,6 +62,8 @@ macro_rules! protocols {
                 match self {
                     $(Self::$variant(decoder) => decoder.next(bytes),)+
                     Self::Described(decoder) => decoder.next(bytes),
+                    Self::Records(decoder) => decoder.next(bytes),
+                    Self::Lines(decoder) => decoder.next(bytes),
                 }
             }
 
@@ -66,6 +72,8 @@ macro_rules! protocols {
                 match self {
                     $(Self::$variant(decoder) => decoder.end(),)+
                     Self::Described(decoder) => decoder.end(),
+                    Self::Records(decoder) => decoder.end(),
+                    Self::Lines(decoder) => decoder.end(),
                 }
             }
 
@@ -75,6 +83,8 @@ macro_rules! protocols {
                 match self {
                     $(Self::$variant(decoder) => decoder.counters(),)+
                     Self::Described(decoder) => decoder.counters(),
+                    Self::Records(decoder) => decoder.counters(),
+                    Self::Lines(decoder) => decoder.counters(),
                 }
             }
         }
@@ -129,11 +139,22 @@ impl AnyDecoder {
 }
 
 impl AnyDecoder {
+    /// Notes that what comes next may begin anywhere, as behind a new connection; call it after [`Self::end`]. Frames
+    /// have a beginning that is looked for; lines of text have one where the line before them ends.
+    pub fn begin_anywhere(&mut self) {
+        if let Self::Lines(decoder) = self {
+            decoder.begin_anywhere();
+        }
+    }
+
     /// True if every frame has a checksum, which alone tells whether pieces of a frame belong together.
     #[must_use]
     pub fn has_checksums(&self) -> bool {
         match self {
             Self::Described(decoder) => decoder.protocol().has_checksums(),
+            Self::Lines(decoder) => decoder.has_checksums(),
+            // Of a file, whose pieces follow each other.
+            Self::Records(_) => true,
             _ => true,
         }
     }

@@ -47,6 +47,14 @@ pub enum ReadingDefect {
         /// Name of the field.
         field: &'static str,
     },
+    /// A record of fixed length is none: nothing after it can be believed.
+    #[error("record {number}: {cause}; the records have another length, or begin elsewhere")]
+    Record {
+        /// Number of the record, from 1.
+        number: u64,
+        /// What shows it.
+        cause: crate::described::RecordDefect,
+    },
     /// The frame is intact, but is no message of the Octant wire.
     #[error(transparent)]
     Unreadable(octant_wire::Unreadable),
@@ -57,6 +65,12 @@ impl ReadingDefect {
     #[must_use]
     pub fn is_intact(self) -> bool {
         !matches!(self, Self::Checksum { .. } | Self::Malformed)
+    }
+
+    /// True if nothing that follows can be read.
+    #[must_use]
+    pub fn is_final(self) -> bool {
+        matches!(self, Self::Record { .. })
     }
 }
 
@@ -159,6 +173,7 @@ impl ReadingCounters {
             ReadingDefect::Malformed => self.malformed += 1,
             ReadingDefect::Unknown { .. }
             | ReadingDefect::NoNumber { .. }
+            | ReadingDefect::Record { .. }
             | ReadingDefect::Unreadable(_) => {
                 self.unknown += 1;
             }

@@ -2,21 +2,21 @@
 
 use crate::common::unhex;
 use crc::{CRC_32_MPEG_2, Crc};
-use octant_instruments::described::{CrcParameters, DescribedCrc, DescribedDecoder};
+use octant_instruments::described::{CrcParameters, DescribedCrc};
 use octant_instruments::description::{READY, UnitDescription};
-use octant_instruments::{FramingEvent, Reading, ReadingKind, Stamp, StampClock};
+use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
 use proptest::prelude::*;
 
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
 const G_MPS2: f64 = 9.806_65;
 
-fn ready(name: &str) -> DescribedDecoder {
+fn ready(name: &str) -> AnyDecoder {
     UnitDescription::ready(name).unwrap().unwrap().decoder()
 }
 
 /// Decodes a whole stream, in pieces of `step` bytes, to its end.
-fn decode(decoder: &mut DescribedDecoder, bytes: &[u8], step: usize) -> Vec<Reading> {
+fn decode(decoder: &mut AnyDecoder, bytes: &[u8], step: usize) -> Vec<Reading> {
     let mut all = Vec::new();
     let mut take = |event| {
         if let FramingEvent::Reading(reading) = event {

@@ -33,10 +33,10 @@ fn what_is_wrong_is_told_with_line_and_key() {
     for (old, new, expected) in [
         (
             "version = 1",
-            "version = 2",
-            "unit.toml:1: version: found 2, but this program reads descriptions up to version 1: use a newer Octant",
+            "version = 3",
+            "unit.toml:1: version: found 3, but this program reads descriptions up to version 2: use a newer Octant",
         ),
-        ("version = 1", "", "unit.toml:1: version: missing, expected version = 1"),
+        ("version = 1", "", "unit.toml:1: version: missing, expected version = 2"),
         (
             "name = \"a unit\"",
             "nmae = \"a unit\"",

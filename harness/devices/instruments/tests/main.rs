@@ -13,10 +13,12 @@ mod described;
 #[cfg(feature = "descriptions")]
 mod described_problems;
 mod fuzz_corpus;
+mod lines;
 mod manuals;
 mod navigation;
 mod no_allocation;
 mod pulses;
+mod records;
 mod rollover;
 mod round_trip;
 mod sampler;

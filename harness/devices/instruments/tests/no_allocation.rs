@@ -89,4 +89,17 @@ fn a_described_decoder_allocates_nothing() {
         }
     }
     assert_eq!((COUNT.with(Cell::get) - before, readings), (0, 100));
+    let ready = UnitDescription::ready("vectornav-imu-ascii").unwrap().unwrap();
+    let mut decoder = ready.port_decoder().unwrap();
+    let line: &[u8] = b"$VNIMU,-00.0350,+00.4222,-00.6643,-00.015,+00.019,+09.948,+00.002066,-00.008442,-00.044656,+20.7,+084.322*66\r\n";
+    let before = COUNT.with(Cell::get);
+    let mut readings = 0;
+    for _ in 0..100 {
+        for mut piece in [&line[..50], &line[50..], &line[..20], b"\n"] {
+            while let Some(event) = decoder.next(&mut piece) {
+                readings += u64::from(matches!(event, FramingEvent::Reading(_)));
+            }
+        }
+    }
+    assert_eq!((COUNT.with(Cell::get) - before, readings), (0, 100));
 }

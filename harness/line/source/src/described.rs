@@ -7,7 +7,7 @@ use octant_instruments::novatel::CountScale;
 use octant_scenario::{DescriptionChoice, Speaks};
 use std::path::Path;
 
-/// Makes a decoder that has received nothing; `None` for messages on a CAN bus. File names are relative to `folder`.
+/// Makes a decoder of a file, from its start; `None` for messages on a CAN bus. File names are relative to `folder`.
 ///
 /// # Errors
 /// If the description can't be read, or isn't one.
@@ -18,11 +18,30 @@ pub(super) fn decoder(
 ) -> Result<Option<AnyDecoder>, SourceError> {
     Ok(match speaks {
         Speaks::Bytes(protocol) => Some(AnyDecoder::scaled(*protocol, count)),
-        Speaks::Described(choice) => {
-            Some(AnyDecoder::Described(description(choice, folder)?.decoder()))
-        }
+        Speaks::Described(choice) => Some(description(choice, folder)?.decoder()),
         Speaks::Can(_) => None,
     })
+}
+
+/// Makes a decoder of a port, likewise.
+///
+/// # Errors
+/// Likewise, or if it describes what can't be read from a port.
+pub(super) fn port_decoder(
+    speaks: &Speaks,
+    count: Option<CountScale>,
+    folder: &Path,
+) -> Result<Option<AnyDecoder>, SourceError> {
+    let Speaks::Described(choice) = speaks else { return decoder(speaks, count, folder) };
+    match description(choice, folder)?.port_decoder() {
+        Some(decoder) => Ok(Some(decoder)),
+        None => Err(SourceError::Read {
+            path: speaks.told(),
+            reason: "found [record] for a port, expected [[frame]] or [[line]]: nothing tells where a record \
+                     begins; what the port sends can be kept by octant capture and read as log:FILE"
+                .to_owned(),
+        }),
+    }
 }
 
 /// Reads a description.

@@ -1,6 +1,7 @@
 //! An MCAP file that octant did not write, as a source: a mapping names topic and fields.
 
 use super::counting::{Counted, Counting, Measured, RowWords};
+use super::joined::Joined;
 use super::messages::{TopicMessage, TopicMessages};
 use super::temperature::TemperatureCheck;
 use super::{Epoch, SourceError};
@@ -12,7 +13,7 @@ use std::io::Read;
 /// Streams a foreign MCAP file.
 pub(super) struct Foreign<R> {
     path: String,
-    messages: TopicMessages<R>,
+    messages: Joined<R>,
     /// Offset and scale of each value.
     scales: Vec<(f64, f64)>,
     has_gimbal: bool,
@@ -23,7 +24,12 @@ pub(super) struct Foreign<R> {
 }
 
 impl<R: Read> Foreign<R> {
-    pub(super) fn new(source: R, path: &str, mapping: &McapMapping) -> Result<Self, SourceError> {
+    /// Makes a reader of the file, which `open` opens once for each topic.
+    pub(super) fn new(
+        mut open: impl FnMut() -> Result<R, SourceError>,
+        path: &str,
+        mapping: &McapMapping,
+    ) -> Result<Self, SourceError> {
         let fail = |reason: String| SourceError::Read { path: path.into(), reason };
         let words = RowWords {
             unit: ["message", "messages"],
@@ -38,11 +44,28 @@ impl<R: Read> Foreign<R> {
             .chain(mapping.gimbal.iter().flatten())
             .collect();
         let temperature = mapping.temperature.iter().map(|field| field.path.as_str());
-        let paths = fields.iter().map(|field| field.path.as_str()).chain(temperature);
+        let paths = |fields: &[&MappedField]| -> Vec<String> {
+            fields.iter().map(|field| field.path.clone()).collect()
+        };
+        let reader = |source: R, topic: &str, paths: Vec<String>| {
+            let paths = paths.iter().map(String::as_str);
+            TopicMessages::new(source, topic, paths, &mapping.stamp).map_err(fail)
+        };
+        let messages = match &mapping.accelerometer_topic {
+            None => {
+                let all = paths(&fields).into_iter().chain(temperature.map(str::to_owned));
+                Joined::one(reader(open()?, &mapping.topic, all.collect())?)
+            }
+            Some(topic) => {
+                let gyro = paths(&fields[..3]).into_iter().chain(paths(&fields[6..]));
+                let gyro = gyro.chain(temperature.map(str::to_owned));
+                let gyro = reader(open()?, &mapping.topic, gyro.collect())?;
+                Joined::two(gyro, reader(open()?, topic, paths(&fields[3..6]))?, 3, 3)
+            }
+        };
         Ok(Self {
             path: path.into(),
-            messages: TopicMessages::new(source, &mapping.topic, paths, &mapping.stamp)
-                .map_err(fail)?,
+            messages,
             scales: fields.iter().map(|field| (field.offset, field.scale)).collect(),
             has_gimbal: mapping.gimbal.is_some(),
             counting: Counting::new(
@@ -73,7 +96,8 @@ impl<R: Read> Foreign<R> {
 
     /// Account of the messages.
     pub(super) fn account(&self) -> Account {
-        self.counting.account(&self.path, self.messages.outside())
+        let account = self.counting.account(&self.path, self.messages.outside());
+        self.messages.unpaired().into_iter().fold(account, Account::left_out)
     }
 
     pub(super) fn saturated(&self) -> u64 {

@@ -4,11 +4,14 @@
 mod any;
 pub mod configure;
 mod counting;
+mod definition;
 mod described;
 mod fields;
 mod fmu;
 mod foreign;
 mod from_scenario;
+mod idl;
+mod joined;
 mod known;
 mod live;
 mod log;
@@ -26,6 +29,7 @@ mod temperature;
 mod text;
 mod traffic;
 mod triads;
+mod walk;
 
 pub use any::AnySource;
 pub use from_scenario::{check_live, open, open_with};

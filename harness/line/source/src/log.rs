@@ -112,6 +112,9 @@ impl LogSource {
             self.rest.start = self.rest.end - bytes.len();
             match event {
                 Some(FramingEvent::Reading(reading)) => return Ok(Some(reading)),
+                Some(FramingEvent::Lost(lost)) if lost.cause.is_final() => {
+                    return Err(self.error(lost.cause.to_string()));
+                }
                 Some(FramingEvent::Lost(lost)) if lost.cause.is_intact() => {
                     self.unread.get_or_insert(lost.cause);
                 }

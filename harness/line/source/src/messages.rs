@@ -1,6 +1,7 @@
 //! Numbers of the messages on one topic of an MCAP file that octant did not write.
 
-use super::fields::{Definition, FieldDecoder, FieldPath, Number};
+use super::definition::{Definition, Wire};
+use super::fields::{FieldDecoder, FieldPath, Number};
 use mcap::records::{Record, op};
 use octant_account::OutsideClock;
 use octant_instruments::align::ClockAlignment;
@@ -85,6 +86,11 @@ impl<R: Read> TopicMessages<R> {
         &self.paths[index]
     }
 
+    /// Topic.
+    pub(super) fn topic(&self) -> &str {
+        &self.topic
+    }
+
     /// Adds the place of the last message to a reason.
     pub(super) fn in_message(&self, reason: &str) -> String {
         self.in_message_number(self.messages, reason)
@@ -167,28 +173,41 @@ impl<R: Read> TopicMessages<R> {
 
     fn topic_missing(&self) -> String {
         let found: Vec<&str> = self.topics.iter().map(String::as_str).collect();
-        format!(
-            "no topic {:?}; the file has {}",
-            self.topic,
-            if found.is_empty() { "none".into() } else { found.join(", ") }
-        )
+        let found = if found.is_empty() { "none".into() } else { found.join(", ") };
+        if self.truncated() {
+            return format!(
+                "the file is truncated: it ends before its index, and the part that is there has no topic {:?}, \
+                 but {found}; what its writer left can be restored by mcap recover",
+                self.topic
+            );
+        }
+        format!("no topic {:?}; the file has {found}", self.topic)
     }
 
     fn decoder(&self, schema: u16, encoding: &str) -> Result<FieldDecoder, String> {
         let topic = &self.topic;
-        match (encoding, self.schemas.get(&schema)) {
-            ("json", _) => Ok(FieldDecoder::Json),
-            ("cdr", Some((name, schema_encoding, text))) if schema_encoding == "ros2msg" => {
-                let text = std::str::from_utf8(text)
-                    .map_err(|error| format!("schema of {topic}: {error}"))?;
-                Definition::parse(name, text).map(FieldDecoder::Cdr)
+        let expected = match encoding {
+            "json" => return Ok(FieldDecoder::Json),
+            "cdr" => "ros2msg or ros2idl",
+            "ros1" => "ros1msg",
+            other => {
+                return Err(format!("topic {topic} is in {other}, expected json, cdr or ros1"));
             }
-            ("cdr", Some((_, schema_encoding, _))) => {
-                Err(format!("topic {topic} has a schema in {schema_encoding}, expected ros2msg"))
+        };
+        let Some((name, schema_encoding, text)) = self.schemas.get(&schema) else {
+            return Err(format!("topic {topic} has no schema, expected {expected}"));
+        };
+        let text = std::str::from_utf8(text);
+        let text = || text.map_err(|error| format!("schema of {topic}: {error}"));
+        let definition = match (encoding, schema_encoding.as_str()) {
+            ("cdr", "ros2msg") => Definition::parse(name, text()?, Wire::Cdr),
+            ("cdr", "ros2idl") => Definition::parse_idl(name, text()?),
+            ("ros1", "ros1msg") => Definition::parse(name, text()?, Wire::Ros1),
+            (_, found) => {
+                Err(format!("topic {topic} has a schema in {found:?}, expected {expected}"))
             }
-            ("cdr", None) => Err(format!("topic {topic} has no schema, expected ros2msg")),
-            (other, _) => Err(format!("topic {topic} is in {other}, expected json or cdr")),
-        }
+        };
+        definition.map(FieldDecoder::Ros)
     }
 }
 

@@ -39,8 +39,12 @@ impl Replay {
         let name = path.display().to_string();
         let kind = match mapping {
             Some(mapping) => {
-                let file = File::open(path).map_err(|e| read_error(&name, &ReadError::Open(e)))?;
-                Kind::Foreign(Box::new(Foreign::new(BufReader::new(file), &name, mapping)?))
+                let open = || {
+                    let file = File::open(path);
+                    file.map(BufReader::new).map_err(|e| read_error(&name, &ReadError::Open(e)))
+                };
+                other_container(&name, &mut open()?)?;
+                Kind::Foreign(Box::new(Foreign::new(open, &name, mapping)?))
             }
             None => {
                 let recording = Recording::open(path).map_err(|e| read_error(&name, &e))?;
@@ -170,6 +174,23 @@ impl Source for Replay {
         };
         (bench, None)
     }
+}
+
+/// Refuses files of which it is known what they are, with what turns them into MCAP.
+fn other_container(path: &str, file: &mut impl Read) -> Result<(), SourceError> {
+    let mut begins = Vec::new();
+    // A file that can't be read says so where it is read.
+    let _ = file.take(16).read_to_end(&mut begins);
+    let reason = if begins.starts_with(b"#ROSBAG V") {
+        "found a bag of ROS 1, expected MCAP: write `mcap convert BAG FILE.mcap`, or `rosbags-convert --src BAG --dst \
+         FOLDER --dst-storage mcap`"
+    } else if begins.starts_with(b"SQLite format 3") {
+        "found a bag of ROS 2 in SQLite, expected MCAP: write `mcap convert BAG.db3 FILE.mcap`, or `rosbags-convert --src \
+         FOLDER --dst FOLDER --dst-storage mcap`"
+    } else {
+        return Ok(());
+    };
+    Err(SourceError::Read { path: path.into(), reason: reason.into() })
 }
 
 fn require_full(path: &str, info: &Info) -> Result<(), SourceError> {

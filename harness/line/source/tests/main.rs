@@ -10,6 +10,8 @@ mod common {
 #[cfg(feature = "can")]
 mod can_source;
 mod counting;
+mod described_files;
+mod mcap_dialects;
 mod reference_rows;
 mod replay;
 mod tcp_source;

@@ -262,6 +262,7 @@ fn json_messages_become_samples() {
     let degree = std::f64::consts::PI / 180.0;
     let mut mapping = McapMapping {
         topic: "/imu/data".into(),
+        accelerometer_topic: None,
         gyro: [field("w[1]", degree), field("w[0]", -degree), field("w[2]", degree)],
         accelerometer: [field("acc.x", 1.0), field("acc.y", 1.0), field("acc.z", 1.0)],
         quantity: RecordedQuantity::Rates,

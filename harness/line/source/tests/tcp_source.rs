@@ -62,6 +62,10 @@ fn a_connection_that_is_closed_is_made_again() {
     assert!(said.contains("326 bytes, 7 readings, "), "{said}");
     assert!(said.contains("; 32 bytes belong to no frame of this protocol"), "{said}");
     assert!(said.contains("; 2 connections; no connection: "), "{said}");
+    let account = &source.accounts()[0];
+    assert_eq!((account.read(), account.used_count(), account.missing_count()), (7, 7, 2));
+    let lines = account.lines().join("\n");
+    assert!(lines.contains("1 connections that were closed and made again"), "{lines}");
     let told = source.conclude(None).0.unwrap();
     assert_eq!((told.readings.samples, told.readings.missing), (7, 2));
     assert!(told.instrument.contains("; 2 connections"), "{}", told.instrument);

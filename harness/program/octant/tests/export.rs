@@ -146,6 +146,9 @@ fn mat_kml_and_rosbag_are_files_of_their_kind() {
     let mut topics: BTreeMap<String, u64> = BTreeMap::new();
     for message in mcap::MessageStream::new(&bytes).unwrap() {
         let message = message.unwrap();
+        // A reader of bags takes no other.
+        assert_eq!(message.channel.message_encoding, "cdr");
+        assert_eq!(message.channel.schema.as_ref().unwrap().encoding, "ros2msg");
         *topics.entry(message.channel.topic.clone()).or_default() += 1;
         if message.channel.topic == "/imu/data" {
             assert_eq!(message.channel.schema.as_ref().unwrap().name, "sensor_msgs/msg/Imu");

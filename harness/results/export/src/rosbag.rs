@@ -1,6 +1,7 @@
 //! MCAP with the topics for other tools, from every output and sample of a recording.
 //!
-//! The topics are those of [`standard`](octant_views::standard), and the JSON of a live run.
+//! The topics are those of [`standard`](octant_views::standard), and those of a live run. All messages are CDR with schemas
+//! `ros2msg`: readers of bags refuse a file with another encoding as a whole.
 
 use super::error::ExportFailure;
 use super::job::{EXPORT_VERSION, Job, NewFile};
@@ -12,7 +13,7 @@ use octant_recorder::reader::Item;
 use octant_sample::Sample;
 use octant_views::about::About;
 use octant_views::boundary::EpochBoundary;
-use octant_views::publisher::RunTopics;
+use octant_views::publisher::{RunEncoding, RunTopics};
 use octant_views::standard::StandardTopic;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -27,7 +28,7 @@ pub(crate) fn write(job: &Job<'_>) -> Result<Vec<PathBuf>, ExportFailure> {
         about.sample_period_ns = measured_period_ns(path)?;
     }
     let new = NewFile::create(job.out, job.force)?;
-    let mut topics = RunTopics::new(about, &StandardTopic::ALL);
+    let mut topics = RunTopics::new(about, &StandardTopic::ALL, RunEncoding::Cdr);
     let begun = Bag::begin(job, new.file()?, topics.channels());
     let mut bag = begun.map_err(|error| new.format(error))?;
     let mut messages = FurtherMessages::default();
@@ -107,11 +108,12 @@ impl Bag {
             .extend(job.info.run.iter().map(|(key, value)| (format!("run.{key}"), value.clone())));
         mcap.write_metadata(&Metadata { name: "octant.export".to_owned(), metadata })?;
         let mut channels = Vec::new();
+        // A recorder of ROS 2 writes the profiles of each topic; none are the default ones.
+        let metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), String::new())]);
         for one in further {
             let (name, encoding) = (one.schema_name, one.schema_encoding);
             let schema = mcap.add_schema(name, encoding, one.schema.as_bytes())?;
-            let none = BTreeMap::new();
-            channels.push(mcap.add_channel(schema, one.topic, one.message_encoding, &none)?);
+            channels.push(mcap.add_channel(schema, one.topic, one.message_encoding, &metadata)?);
         }
         Ok(Self { mcap, channels, sequence: 0 })
     }

@@ -148,7 +148,10 @@ impl<R: Read> Records<R> {
                     return Ok(Some(take(opcode, data)));
                 }
                 Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted,
-                Some(Err(mcap::McapError::UnexpectedEof)) if self.started => {
+                // Behind the magic bytes, which were right, a file is one that ends early.
+                Some(Err(mcap::McapError::UnexpectedEof))
+                    if self.started || self.offset >= mcap::MAGIC.len() as u64 =>
+                {
                     self.end = Some(FileEnd::Truncated);
                     break;
                 }

@@ -3,6 +3,7 @@
 //! - [`state`] follows a run message by message, [`about`] knows its scenario
 //! - [`published`] makes JSON of both, [`standard`] messages of ROS 2 from the parts of an epoch, in the layout of
 //!   [`ros`]
+//! - [`ros_published`] makes messages of ROS 2 of those in JSON
 //! - [`publisher`] makes all of them while a run is recorded, for its own recording
 //!
 //! A recording, a live run and an export have the same messages, because all three are made here.
@@ -12,6 +13,7 @@ pub mod boundary;
 pub mod published;
 pub mod publisher;
 pub mod ros;
+pub mod ros_published;
 pub mod series;
 pub mod solution;
 pub mod standard;

@@ -18,11 +18,12 @@ pub enum RosType {
 }
 
 /// Line between a definition and those that it contains.
-const SEPARATOR: &str =
+pub(super) const SEPARATOR: &str =
     "================================================================================\n";
 
-const TIME: &str = "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
-const HEADER: &str = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
+pub(super) const TIME: &str = "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
+pub(super) const HEADER: &str =
+    "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 const VECTOR3: &str = "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n";
 const QUATERNION: &str = "MSG: geometry_msgs/Quaternion\n\
     float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
@@ -95,10 +96,15 @@ impl<'a> RosMessage<'a> {
         let seconds = i32::try_from(time_ns / 1_000_000_000).unwrap_or(i32::MAX);
         message.put(&seconds.to_le_bytes());
         message.put(&((time_ns % 1_000_000_000) as u32).to_le_bytes());
-        message.put(&(frame_id.len() as u32 + 1).to_le_bytes());
-        message.bytes.extend_from_slice(frame_id.as_bytes());
-        message.bytes.push(0);
+        message.text(frame_id);
         message
+    }
+
+    /// Appends a text, with its end.
+    pub fn text(&mut self, text: &str) {
+        self.put(&(text.len() as u32 + 1).to_le_bytes());
+        self.bytes.extend_from_slice(text.as_bytes());
+        self.bytes.push(0);
     }
 
     /// Appends a field at a multiple of its size.

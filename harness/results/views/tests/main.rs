@@ -6,6 +6,7 @@ mod layouts;
 mod recording;
 mod recordings;
 mod ros;
+mod ros_published;
 mod series;
 mod solution;
 mod standard;

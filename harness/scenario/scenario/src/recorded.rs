@@ -240,6 +240,8 @@ pub enum MappedStamp {
 pub struct McapMapping {
     /// Topic of the inertial messages.
     pub topic: String,
+    /// Topic of the accelerometers, where it is another one; `topic` is that of the gyros then.
+    pub accelerometer_topic: Option<String>,
     /// Gyros x y z of the body: rad/s (rad, for increments) after scaling.
     pub gyro: [MappedField; 3],
     /// Accelerometers x y z of the body: m/s² (m/s) after scaling.
@@ -267,6 +269,7 @@ impl McapMapping {
             |name: &str| ["x", "y", "z"].map(|axis| MappedField::si(&format!("{name}.{axis}")));
         Self {
             topic: topic.into(),
+            accelerometer_topic: None,
             gyro: axes("angular_velocity"),
             accelerometer: axes("linear_acceleration"),
             quantity: RecordedQuantity::Rates,

@@ -55,6 +55,7 @@ const EXAMPLES: &[(&str, &str)] = &[
         key!(baseline.stops),
         r#"[{ azimuth = "0 deg", roll = "0 deg", weight = 1.0 }, { azimuth = "0 deg", roll = "90 deg", weight = 1.0 }]"#,
     ),
+    (key!(source.mcap.accelerometer.topic), r#""/accel""#),
     (key!(source.text.gyro.file), r#""gyroscope.txt""#),
     (key!(source.text.gyro.y), "3"),
     (key!(source.text.gyro.z), "4"),

@@ -3,12 +3,18 @@
 use super::cursor::ColumnCursor;
 use super::layout::{PLAN_KEY, SCHEMA, SCHEMA_WITH_UNITS, TableError, UNITS_KEY, VERSION_KEY};
 use super::values::{ColumnKind, ColumnValues};
-use parquet::basic::Type as Physical;
+use parquet::basic::{Compression, Type as Physical};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
+
+/// Name of a compression as other programs write it, without its level.
+fn compression_name(compression: Compression) -> String {
+    let text = format!("{compression:?}").to_lowercase();
+    text.split('(').next().unwrap_or_default().to_owned()
+}
 
 /// Existing table.
 pub struct ExistingTable {
@@ -70,6 +76,20 @@ impl ExistingTable {
                 "found {} row groups, expected one",
                 metadata.num_row_groups()
             )));
+        }
+        let stored = metadata.row_groups().iter().flat_map(|group| group.columns());
+        for column in stored {
+            match column.compression() {
+                Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::ZSTD(_) => {}
+                other => {
+                    return Err(form(format!(
+                        "column {} is compressed with {}, expected zstd, snappy or none: write the table with \
+                         compression=\"zstd\", as pandas' to_parquet and pyarrow's write_table take it",
+                        column.column_descr().name(),
+                        compression_name(other)
+                    )));
+                }
+            }
         }
         let columns = metadata.file_metadata().schema_descr().columns();
         let columns = columns.iter().map(|column| {

@@ -7,17 +7,28 @@
 //!
 //! Values are in the axes of the unit, as its description maps them. A reading has those quantities that its frame
 //! has; a frame without an inertial quantity holds no reading.
+//!
+//! [`FixedRecords`] are records of one length without bytes that they begin with, in a file, and a [`LineDescription`]
+//! has lines of text.
 
 mod check;
+mod gather;
+mod lines;
 mod number;
+mod records;
 
 pub use check::{ChecksumKind, CrcParameters, DescribedCrc, FrameChecksum};
+pub use lines::{
+    BEGINS_BYTES_MAX, LINE_BYTES_MAX, LINE_FIELDS_MAX, LINES_MAX, LineChecksum, LineDescription,
+    LineField, LineForm, LineSeparator, LinesDecoder,
+};
 pub use number::{ByteOrder, FrameNumber, NumberType};
+pub use records::{FixedRecords, FoundNumber, RECORD_FIELDS_MAX, RecordDefect, RecordsDecoder};
 
 use crate::framing::{Extent, FrameDecoder, Framing, ReadingDefect};
 use crate::rollover::Rollover;
-use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
-use octant_sample::Status;
+use crate::{Reading, ReadingKind};
+use gather::{FieldNumber, Gather};
 
 /// Most bytes of a frame.
 pub const FRAME_BYTES_MAX: usize = 1024;
@@ -86,6 +97,37 @@ pub struct FrameField {
     pub number: FrameNumber,
     /// Meaning.
     pub meaning: FieldMeaning,
+}
+
+impl FrameField {
+    #[inline]
+    fn number(&self, bytes: &[u8]) -> FieldNumber {
+        let value = self.number.value(bytes);
+        let is_integer = self.number.number.is_integer();
+        let raw = match self.meaning {
+            FieldMeaning::Stamp(size_ns) if !is_integer => libm::round(value * size_ns) as u64,
+            _ => self.number.raw(bytes),
+        };
+        FieldNumber { value, raw, is_integer }
+    }
+}
+
+impl FieldMeaning {
+    /// Name of the field in messages.
+    pub(crate) const fn name(&self) -> &'static str {
+        match self {
+            Self::Rotation { axis: 0, .. } => "gyro x",
+            Self::Rotation { axis: 1, .. } => "gyro y",
+            Self::Rotation { .. } => "gyro z",
+            Self::Velocity { axis: 0, .. } => "accel x",
+            Self::Velocity { axis: 1, .. } => "accel y",
+            Self::Velocity { .. } => "accel z",
+            Self::Counter => "counter",
+            Self::Stamp(_) => "stamp",
+            Self::Temperature { .. } => "temperature",
+            Self::Flags { .. } => "status",
+        }
+    }
 }
 
 /// A frame.
@@ -298,70 +340,10 @@ impl Framing for Described {
                 return Err(ReadingDefect::Checksum { found, computed });
             }
         }
-        let mut reading = Reading::NOTHING;
-        let (mut rotation, mut velocity) = (Gathered::default(), Gathered::default());
+        let mut gather = Gather::new(&mut self.counter, &mut self.stamp);
         for field in &self.description.fields[frame.fields.0..frame.fields.1] {
-            let FrameField { number, meaning } = field;
-            match *meaning {
-                FieldMeaning::Rotation { axis, kind, zero, scale } => {
-                    rotation.take(axis, kind, (number.value(bytes) - zero) * scale);
-                }
-                FieldMeaning::Velocity { axis, kind, zero, scale } => {
-                    velocity.take(axis, kind, (number.value(bytes) - zero) * scale);
-                }
-                FieldMeaning::Counter => {
-                    reading.sequence = Some(self.counter.continued(number.raw(bytes)));
-                }
-                FieldMeaning::Stamp(size_ns) => {
-                    let raw = self.stamp.continued(number.raw(bytes));
-                    let ns = nanoseconds(raw, size_ns);
-                    reading.stamp = Some(Stamp { ns, clock: StampClock::Startup });
-                }
-                FieldMeaning::Temperature { zero, scale, offset_c } => {
-                    let celsius = (number.value(bytes) - zero) * scale + offset_c;
-                    reading.temperature_c = Some(celsius as f32);
-                }
-                FieldMeaning::Flags { good, faulty, gyro_saturated, accel_saturated } => {
-                    let word = number.raw(bytes);
-                    reading.status_word = reading.status_word.or(Some(word as u32));
-                    let mut set = |flag, is: bool| {
-                        if is {
-                            reading.status |= flag;
-                        }
-                    };
-                    set(Status::INERTIAL_INVALID, word & good != good || word & faulty != 0);
-                    set(Status::GYRO_SATURATED, word & gyro_saturated != 0);
-                    set(Status::ACCELEROMETER_SATURATED, word & accel_saturated != 0);
-                }
-            }
+            gather.take(&field.meaning, field.number(bytes));
         }
-        (reading.rotation, reading.velocity) = (rotation.triad, velocity.triad);
-        Ok(reading.is_inertial().then_some(reading))
+        Ok(gather.end())
     }
-}
-
-/// Values of three axes as they come.
-#[derive(Default)]
-struct Gathered {
-    triad: Option<MeasuredTriad>,
-}
-
-impl Gathered {
-    #[inline]
-    fn take(&mut self, axis: usize, kind: ReadingKind, value: f64) {
-        let triad = self.triad.get_or_insert(MeasuredTriad { kind, value: [0.0; 3], lsb: None });
-        if let Some(room) = triad.value.get_mut(axis) {
-            *room = value;
-        }
-    }
-}
-
-/// Time of so many units of a clock, ns: exact where a unit is a whole number of ns.
-#[inline]
-fn nanoseconds(units: u64, size_ns: f64) -> u64 {
-    let whole = size_ns as u64;
-    if whole as f64 == size_ns {
-        return units.saturating_mul(whole);
-    }
-    libm::round(units as f64 * size_ns) as u64
 }

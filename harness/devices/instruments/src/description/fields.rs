@@ -2,7 +2,9 @@
 
 use super::table::{DescriptionProblem, Table};
 use crate::ReadingKind;
-use crate::described::{ByteOrder, FieldMeaning, FrameField, FrameNumber, NumberType};
+use crate::described::{
+    ByteOrder, FieldMeaning, FrameField, FrameNumber, LINE_BYTES_MAX, LineField, NumberType,
+};
 use crate::units::{Quantity, Unit, names, unit};
 use std::format;
 use std::vec::Vec;
@@ -50,12 +52,67 @@ const SUBJECTS: [(&str, Is); 10] = [
     ("status", Is::Status),
 ];
 
+/// Where the fields of a frame or a line are.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Places {
+    /// Among so many bytes.
+    Bytes {
+        /// Number of bytes of the frame or record.
+        bytes: usize,
+        /// Order of the bytes of numbers.
+        order: ByteOrder,
+        /// Whether a stamp may be a floating-point number, as from version 2 on.
+        float_stamps: bool,
+    },
+    /// In columns of a line.
+    Columns,
+}
+
+/// Place of a field.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum FieldPlace {
+    /// A number among bytes.
+    Number(FrameNumber),
+    /// A column, from 1.
+    Column(usize),
+}
+
+impl FieldPlace {
+    fn is_integer(&self) -> bool {
+        matches!(self, Self::Number(number) if number.number.is_integer())
+    }
+}
+
 /// A field with the range of its counter or clock.
 pub(super) struct ReadField {
-    pub(super) field: FrameField,
-    /// Number of values of a counter or a stamp; `None`: 2⁶⁴.
+    pub(super) place: FieldPlace,
+    pub(super) meaning: FieldMeaning,
+    /// Number of values of a counter or a stamp, of a stamp that is no integer in ns; `None`: 2⁶⁴.
     pub(super) modulo: Option<u64>,
     subject: Is,
+}
+
+impl ReadField {
+    /// The field of a line.
+    pub(super) fn of_line(&self) -> Option<LineField> {
+        match self.place {
+            FieldPlace::Column(column) => Some(LineField { column, meaning: self.meaning }),
+            FieldPlace::Number(_) => None,
+        }
+    }
+
+    /// The field of a frame or record.
+    pub(super) fn of_frame(&self) -> Option<FrameField> {
+        match self.place {
+            FieldPlace::Number(number) => Some(FrameField { number, meaning: self.meaning }),
+            FieldPlace::Column(_) => None,
+        }
+    }
+
+    /// True for the time of an integer field.
+    pub(super) fn is_integer(&self) -> bool {
+        self.place.is_integer()
+    }
 }
 
 /// Offset of a key's value from the frame's start, for something of so many bytes.
@@ -78,16 +135,15 @@ pub(super) fn place(
     Ok(usize::try_from(from_start).ok())
 }
 
-/// Reads the fields of a frame of so many bytes.
+/// Reads the fields of a frame, a record or a line.
 pub(super) fn fields(
     frame: &Table<'_>,
-    frame_bytes: usize,
-    order: ByteOrder,
+    places: Places,
 ) -> Result<Vec<ReadField>, DescriptionProblem> {
     let tables = frame.tables("field")?;
     let mut all: Vec<ReadField> = Vec::new();
     for table in &tables {
-        let read = field(table, frame_bytes, order)?;
+        let read = field(table, places)?;
         let is_same = |other: &ReadField| other.subject == read.subject;
         // Several status words are taken together.
         if read.subject != Is::Status && all.iter().any(is_same) {
@@ -107,7 +163,7 @@ fn triad(
     all: &[ReadField],
     sensor: &str,
 ) -> Result<(), DescriptionProblem> {
-    let kind = |read: &ReadField| match (sensor, read.field.meaning) {
+    let kind = |read: &ReadField| match (sensor, read.meaning) {
         ("gyro", FieldMeaning::Rotation { kind, .. })
         | ("accel", FieldMeaning::Velocity { kind, .. }) => Some(kind),
         _ => None,
@@ -135,11 +191,7 @@ fn triad(
     }
 }
 
-fn field(
-    table: &Table<'_>,
-    frame_bytes: usize,
-    order: ByteOrder,
-) -> Result<ReadField, DescriptionProblem> {
+fn field(table: &Table<'_>, places: Places) -> Result<ReadField, DescriptionProblem> {
     let subject = table.needed_choice("is", &SUBJECTS)?;
     let special: &[&str] = match subject {
         Is::Gyro(_) | Is::Accel(_) | Is::Temperature => &["unit", "scale", "zero"],
@@ -147,19 +199,32 @@ fn field(
         Is::Stamp => &["unit", "scale", "modulo"],
         Is::Status => &["good", "faulty", "gyro_saturated", "accel_saturated"],
     };
-    let known = [&["is", "at", "type", "byte_order", "mask"], special].concat();
-    table.only(&known)?;
-    let number = table.needed_choice("type", &TYPES)?;
-    let order = table.choice("byte_order", &ORDERS)?.unwrap_or(order);
-    let at = place(table, "at", number.bytes(), frame_bytes)?.ok_or_else(|| {
-        table.problem("at", "missing, expected the offset of the field's first byte")
-    })?;
-    let mut number = FrameNumber::whole(at, number, order);
-    mask(table, &mut number)?;
-    let needs_integer = matches!(subject, Is::Counter | Is::Stamp | Is::Status);
-    if needs_integer && !number.number.is_integer() {
-        return Err(table.problem("type", "found a floating-point type, expected an integer"));
-    }
+    let place = match places {
+        Places::Bytes { bytes, order, float_stamps } => {
+            table.only(&[&["is", "at", "type", "byte_order", "mask"], special].concat())?;
+            let number = number(table, bytes, order)?;
+            let needs_integer = match subject {
+                Is::Counter | Is::Status => true,
+                Is::Stamp => !float_stamps,
+                _ => false,
+            };
+            if needs_integer && !number.number.is_integer() {
+                let what = "found a floating-point type, expected an integer";
+                let version = if subject == Is::Stamp { ", or version = 2" } else { "" };
+                return Err(table.problem("type", format!("{what}{version}")));
+            }
+            FieldPlace::Number(number)
+        }
+        Places::Columns => {
+            table.only(&[&["is", "column"], special].concat())?;
+            let column = table.integer("column", 1..=LINE_BYTES_MAX as i64)?.ok_or_else(|| {
+                table.problem("column", "missing, expected the number of the column, from 1")
+            })?;
+            FieldPlace::Column(usize::try_from(column).unwrap_or(1))
+        }
+    };
+    // A number of a column is one of 64 bits.
+    let bits = if let FieldPlace::Number(number) = place { number.bits } else { 64 };
     let mut range = None;
     let meaning = match subject {
         Is::Gyro(axis) => {
@@ -173,18 +238,24 @@ fn field(
             FieldMeaning::Velocity { axis, kind, zero, scale }
         }
         Is::Counter => {
-            range = modulo(table, &number)?;
+            range = modulo(table, bits)?;
             FieldMeaning::Counter
         }
         Is::Stamp => {
-            range = modulo(table, &number)?;
             let size = scale(table)? * unit_of(table, &[Quantity::Time])?.1;
             if size <= 0.0 {
                 return Err(
                     table.problem("scale", "found a negative number, expected a positive one")
                 );
             }
-            FieldMeaning::Stamp(size * 1e9)
+            let size_ns = size * 1e9;
+            range = if place.is_integer() {
+                modulo(table, bits)?
+            } else {
+                // The clock of a decimal number is continued in ns.
+                modulo(table, 64)?.map(|units| libm::round(units as f64 * size_ns) as u64)
+            };
+            FieldMeaning::Stamp(size_ns)
         }
         Is::Temperature => {
             let (scale, zero) = (scale(table)?, table.number("zero")?.unwrap_or(0.0));
@@ -193,7 +264,7 @@ fn field(
             FieldMeaning::Temperature { zero, scale, offset_c }
         }
         Is::Status => {
-            let most = if number.bits >= 63 { i64::MAX } else { (1 << number.bits) - 1 };
+            let most = if bits >= 63 { i64::MAX } else { (1 << bits) - 1 };
             let bits = |key: &str| -> Result<u64, DescriptionProblem> {
                 Ok(table.integer(key, 0..=most)?.unwrap_or(0).unsigned_abs())
             };
@@ -207,7 +278,23 @@ fn field(
             FieldMeaning::Flags { good, faulty, gyro_saturated, accel_saturated }
         }
     };
-    Ok(ReadField { field: FrameField { number, meaning }, modulo: range, subject })
+    Ok(ReadField { place, meaning, modulo: range, subject })
+}
+
+/// Reads the number of a field among so many bytes.
+fn number(
+    table: &Table<'_>,
+    frame_bytes: usize,
+    order: ByteOrder,
+) -> Result<FrameNumber, DescriptionProblem> {
+    let number = table.needed_choice("type", &TYPES)?;
+    let order = table.choice("byte_order", &ORDERS)?.unwrap_or(order);
+    let at = place(table, "at", number.bytes(), frame_bytes)?.ok_or_else(|| {
+        table.problem("at", "missing, expected the offset of the field's first byte")
+    })?;
+    let mut number = FrameNumber::whole(at, number, order);
+    mask(table, &mut number)?;
+    Ok(number)
 }
 
 /// Takes the bits of a mask, which is one run of ones.
@@ -263,8 +350,8 @@ fn inertial(
 }
 
 /// Number of values before a counter begins again; `None`: 2⁶⁴.
-fn modulo(table: &Table<'_>, number: &FrameNumber) -> Result<Option<u64>, DescriptionProblem> {
-    let all = 1u64.checked_shl(number.bits);
+fn modulo(table: &Table<'_>, bits: u32) -> Result<Option<u64>, DescriptionProblem> {
+    let all = 1u64.checked_shl(bits);
     let most = all.and_then(|all| i64::try_from(all).ok()).unwrap_or(i64::MAX);
     match table.integer("modulo", 2..=most)? {
         None => Ok(all),

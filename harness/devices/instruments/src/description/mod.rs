@@ -15,14 +15,23 @@
 //! ]
 //! ```
 //!
+//! In place of frames a description has the records of one length of a file, `[record]`, or lines of text, `[[line]]`.
+//!
 //! Places are offsets from the frame's first byte, which is 0; negative ones count from behind its last byte. A key
 //! that isn't known, a value that isn't possible, and a description of a newer version are errors with file and line.
 
+mod checksum;
 mod fields;
+mod lines;
 mod read;
+mod record;
 mod table;
 
-use crate::described::{Described, DescribedDecoder, RecordDescription};
+use crate::AnyDecoder;
+use crate::described::{
+    Described, DescribedDecoder, FixedRecords, LineDescription, LinesDecoder, RecordDescription,
+    RecordsDecoder,
+};
 use std::string::String;
 
 pub use table::{DescriptionProblem, VERSION};
@@ -32,8 +41,20 @@ pub use table::{DescriptionProblem, VERSION};
 pub struct UnitDescription {
     /// Name of the unit and its format.
     pub name: String,
-    /// Its frames.
-    pub record: RecordDescription,
+    /// What it sends.
+    pub form: UnitForm,
+}
+
+/// Form of what a unit sends.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one for each port or file")]
+pub enum UnitForm {
+    /// Frames with bytes that they begin with.
+    Frames(RecordDescription),
+    /// Records of one length, in a file.
+    Records(FixedRecords),
+    /// Lines of text.
+    Lines(LineDescription),
 }
 
 impl UnitDescription {
@@ -42,8 +63,8 @@ impl UnitDescription {
     /// # Errors
     /// If the text is no description, with file, line and key.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionProblem> {
-        let (name, record) = read::read(file, text)?;
-        Ok(Self { name, record })
+        let (name, form) = read::read(file, text)?;
+        Ok(Self { name, form })
     }
 
     /// Reads a description that is part of the program, if there is one of the name.
@@ -55,18 +76,35 @@ impl UnitDescription {
         found.map(|(name, text)| Self::parse(name, text)).transpose()
     }
 
-    /// Makes a decoder that has received nothing.
+    /// Makes a decoder of a file, from its start.
     #[must_use]
-    pub fn decoder(&self) -> DescribedDecoder {
-        DescribedDecoder::new(Described::new(self.record.clone()))
+    pub fn decoder(&self) -> AnyDecoder {
+        match &self.form {
+            UnitForm::Frames(record) => {
+                AnyDecoder::Described(DescribedDecoder::new(Described::new(record.clone())))
+            }
+            UnitForm::Records(records) => AnyDecoder::Records(RecordsDecoder::new(records.clone())),
+            UnitForm::Lines(lines) => AnyDecoder::Lines(LinesDecoder::of_file(lines.clone())),
+        }
+    }
+
+    /// Makes a decoder of a port, which may be opened at any time; `None` for records, whose beginning nothing tells.
+    #[must_use]
+    pub fn port_decoder(&self) -> Option<AnyDecoder> {
+        match &self.form {
+            UnitForm::Frames(_) => Some(self.decoder()),
+            UnitForm::Records(_) => None,
+            UnitForm::Lines(lines) => Some(AnyDecoder::Lines(LinesDecoder::of_port(lines.clone()))),
+        }
     }
 }
 
 /// Name and text of each.
-pub const READY: [(&str, &str); 5] = [
+pub const READY: [(&str, &str); 6] = [
     ("kvh-1775-angle", include_str!("../../descriptions/kvh-1775-angle.toml")),
     ("kvh-1775-rate", include_str!("../../descriptions/kvh-1775-rate.toml")),
     ("ln-100-like", include_str!("../../descriptions/ln-100-like.toml")),
     ("stim300-increment", include_str!("../../descriptions/stim300-increment.toml")),
     ("stim300-rate", include_str!("../../descriptions/stim300-rate.toml")),
+    ("vectornav-imu-ascii", include_str!("../../descriptions/vectornav-imu-ascii.toml")),
 ];

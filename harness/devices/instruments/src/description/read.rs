@@ -1,11 +1,14 @@
 //! A description from its text.
 
-use super::fields::{ORDERS, ReadField, fields, place};
+use super::UnitForm;
+use super::checksum::checksum;
+use super::fields::{ORDERS, Places, ReadField, fields};
+use super::lines::lines;
+use super::record::record;
 use super::table::{DescriptionProblem, Table, Text, VERSION};
 use crate::described::{
-    ByteOrder, ChecksumKind, CrcParameters, DescribedCrc, FRAME_BYTES_MAX, FieldMeaning,
-    FrameChecksum, FrameDescription, FrameField, FrameNumber, NumberType, RecordDescription,
-    SYNC_BYTES_MAX,
+    ByteOrder, FRAME_BYTES_MAX, FieldMeaning, FrameChecksum, FrameDescription, FrameField,
+    RecordDescription, SYNC_BYTES_MAX,
 };
 use crate::rollover::Rollover;
 use std::borrow::ToOwned;
@@ -21,11 +24,8 @@ struct ReadFrame {
     fields: Vec<FrameField>,
 }
 
-/// Reads the name and the frames of a unit.
-pub(super) fn read(
-    file: &str,
-    text: &str,
-) -> Result<(String, RecordDescription), DescriptionProblem> {
+/// Reads the name and the form of a unit.
+pub(super) fn read(file: &str, text: &str) -> Result<(String, UnitForm), DescriptionProblem> {
     let text = Text { file, text };
     let table = octant_toml_tree::read(text.text)
         .map_err(|problem| text.problem(&problem.place, problem.message))?;
@@ -40,29 +40,58 @@ pub(super) fn read(
         );
         return Err(root.problem("version", what));
     }
-    root.only(&["version", "name", "byte_order", "checksum", "frame"])?;
+    if let Some(key) = ["record", "line"].into_iter().find(|key| version < 2 && root.has(key)) {
+        let what = format!("found in a description of version {version}, expected version = 2");
+        return Err(root.problem(key, what));
+    }
+    root.only(match (root.has("record"), root.has("line")) {
+        (true, false) => &["version", "name", "byte_order", "checksum", "record"],
+        (false, true) => &["version", "name", "skip_lines", "line"],
+        (false, false) if version < 2 => &["version", "name", "byte_order", "checksum", "frame"],
+        _ => {
+            &["version", "name", "byte_order", "checksum", "frame", "record", "line", "skip_lines"]
+        }
+    })?;
     let name = root.text("name")?.filter(|name| !name.is_empty()).map(ToOwned::to_owned);
     let name =
         name.ok_or_else(|| root.problem("name", "missing, expected the unit and its format"))?;
+    if root.has("record") && root.has("line") {
+        let what = "found beside record, expected one of [[frame]], [record] and [[line]]";
+        return Err(root.problem("line", what));
+    }
+    let form = if root.has("record") {
+        UnitForm::Records(record(&root)?)
+    } else if root.has("line") {
+        UnitForm::Lines(lines(&root)?)
+    } else {
+        UnitForm::Frames(frames(&root, version)?)
+    };
+    Ok((name, form))
+}
+
+/// Reads the frames of a unit.
+fn frames(root: &Table<'_>, version: i64) -> Result<RecordDescription, DescriptionProblem> {
     let order = root.choice("byte_order", &ORDERS)?.unwrap_or_default();
     let checksum = root.table("checksum")?;
     let tables = root.tables("frame")?;
     if tables.is_empty() {
-        return Err(root.problem("frame", "missing, expected one [[frame]] at least"));
+        let what = if version < 2 {
+            "missing, expected one [[frame]] at least"
+        } else {
+            "missing, expected one [[frame]] at least, a [record] or a [[line]]"
+        };
+        return Err(root.problem("frame", what));
+    }
+    if let Some(key) = ["skip_lines"].into_iter().find(|key| root.has(key)) {
+        return Err(root.problem(key, "found without a [[line]], expected it with lines alone"));
     }
     let mut frames = Vec::new();
     let mut ranges = Ranges::default();
+    let given = Given { checksum: checksum.as_ref(), order, float_stamps: version >= 2 };
     for table in &tables {
-        frame(table, checksum.as_ref(), order, &mut ranges, &mut frames)?;
+        frame(table, &given, &mut ranges, &mut frames)?;
     }
-    let is_whole = |frame: &&ReadFrame| {
-        let has = |wanted: fn(&FieldMeaning) -> bool| {
-            frame.fields.iter().any(|field| wanted(&field.meaning))
-        };
-        has(|meaning| matches!(meaning, FieldMeaning::Rotation { .. }))
-            && has(|meaning| matches!(meaning, FieldMeaning::Velocity { .. }))
-    };
-    if !frames.iter().any(|frame| is_whole(&frame)) {
+    if !frames.iter().any(|frame| is_whole(frame.fields.iter().map(|field| &field.meaning))) {
         let what = "found no frame with gyros and accelerometers, expected one at least: a reading has both";
         return Err(root.problem("frame", what));
     }
@@ -75,25 +104,50 @@ pub(super) fn read(
             fields,
         })
         .collect();
-    let rollover = |range: Option<Option<u64>>| match range {
-        Some(Some(modulo)) => Rollover::modulo(modulo),
-        Some(None) | None => Rollover::new(64),
-    };
-    let record = RecordDescription::new(&views, rollover(ranges.counter), rollover(ranges.stamp))
-        .map_err(|error| root.problem("frame", error.to_string()))?;
-    Ok((name, record))
+    RecordDescription::new(&views, ranges.counter(), ranges.stamp())
+        .map_err(|error| root.problem("frame", error.to_string()))
+}
+
+/// True if the fields are gyros and accelerometers.
+pub(super) fn is_whole<'a>(mut meanings: impl Iterator<Item = &'a FieldMeaning> + Clone) -> bool {
+    let has_gyros =
+        meanings.clone().any(|meaning| matches!(meaning, FieldMeaning::Rotation { .. }));
+    has_gyros && meanings.any(|meaning| matches!(meaning, FieldMeaning::Velocity { .. }))
 }
 
 /// Ranges of counter and clock, which are the same in all frames.
 #[derive(Default)]
-struct Ranges {
+pub(super) struct Ranges {
     counter: Option<Option<u64>>,
     stamp: Option<Option<u64>>,
+    /// Whether the stamp is an integer.
+    integer_stamp: Option<bool>,
 }
 
 impl Ranges {
-    fn take(&mut self, table: &Table<'_>, read: &ReadField) -> Result<(), DescriptionProblem> {
-        let (known, what) = match read.field.meaning {
+    pub(super) fn counter(&self) -> Rollover {
+        rollover(self.counter)
+    }
+
+    pub(super) fn stamp(&self) -> Rollover {
+        rollover(self.stamp)
+    }
+
+    /// Notes the range of a field, which is that of the same field of every frame before it.
+    pub(super) fn take(
+        &mut self,
+        table: &Table<'_>,
+        read: &ReadField,
+    ) -> Result<(), DescriptionProblem> {
+        if let FieldMeaning::Stamp(_) = read.meaning {
+            let is_integer = read.is_integer();
+            if self.integer_stamp.is_some_and(|known| known != is_integer) {
+                let message = "found stamps of integers and of floating-point numbers, expected one of both in all frames";
+                return Err(table.problem("field", message));
+            }
+            self.integer_stamp = Some(is_integer);
+        }
+        let (known, what) = match read.meaning {
             FieldMeaning::Counter => (&mut self.counter, "counter"),
             FieldMeaning::Stamp(_) => (&mut self.stamp, "stamp"),
             _ => return Ok(()),
@@ -112,11 +166,24 @@ impl Ranges {
     }
 }
 
+fn rollover(range: Option<Option<u64>>) -> Rollover {
+    match range {
+        Some(Some(modulo)) => Rollover::modulo(modulo),
+        Some(None) | None => Rollover::new(64),
+    }
+}
+
+/// What holds for all frames.
+struct Given<'a> {
+    checksum: Option<&'a Table<'a>>,
+    order: ByteOrder,
+    float_stamps: bool,
+}
+
 /// Reads the forms of a frame.
 fn frame(
     table: &Table<'_>,
-    checksum_of_all: Option<&Table<'_>>,
-    order: ByteOrder,
+    given: &Given<'_>,
     ranges: &mut Ranges,
     frames: &mut Vec<ReadFrame>,
 ) -> Result<(), DescriptionProblem> {
@@ -132,8 +199,9 @@ fn frame(
     } else if let Some(key) = ["sync", "length"].into_iter().find(|key| table.has(key)) {
         return Err(table.problem(key, "found beside forms, expected it in each of the forms"));
     }
+    let Given { order, float_stamps, .. } = *given;
     let own = table.table("checksum")?;
-    let checksum_table = own.as_ref().or(checksum_of_all).ok_or_else(|| {
+    let checksum_table = own.as_ref().or(given.checksum).ok_or_else(|| {
         table.problem(
             "checksum",
             "missing, expected a table with kind; kind = \"none\" if the frame has none",
@@ -156,108 +224,12 @@ fn frame(
         })?;
         let bytes = usize::try_from(bytes).unwrap_or(FRAME_BYTES_MAX);
         let checksum = checksum(checksum_table, bytes, order)?;
-        let read = fields(table, bytes, order)?;
+        let read = fields(table, Places::Bytes { bytes, order, float_stamps })?;
         for field in &read {
             ranges.take(table, field)?;
         }
-        let fields = read.into_iter().map(|read| read.field).collect();
+        let fields = read.iter().filter_map(ReadField::of_frame).collect();
         frames.push(ReadFrame { sync, bytes, checksum, fields });
     }
     Ok(())
-}
-
-/// Kinds of checksums by their names; of a CRC its width.
-#[derive(Clone, Copy)]
-enum Named {
-    None,
-    Plain(ChecksumKind),
-    Crc(u32),
-}
-
-const KINDS: [(&str, Named); 8] = [
-    ("none", Named::None),
-    ("sum8", Named::Plain(ChecksumKind::Sum8)),
-    ("sum16", Named::Plain(ChecksumKind::Sum16)),
-    ("words16", Named::Plain(ChecksumKind::Words16)),
-    ("xor8", Named::Plain(ChecksumKind::Xor8)),
-    ("crc8", Named::Crc(8)),
-    ("crc16", Named::Crc(16)),
-    ("crc32", Named::Crc(32)),
-];
-
-fn checksum(
-    table: &Table<'_>,
-    frame_bytes: usize,
-    order: ByteOrder,
-) -> Result<Option<FrameChecksum>, DescriptionProblem> {
-    const PLACES: [&str; 6] = ["kind", "from", "to", "at", "byte_order", "pad_to"];
-    let kind = match table.needed_choice("kind", &KINDS)? {
-        Named::None => {
-            table.only(&["kind"])?;
-            return Ok(None);
-        }
-        Named::Plain(kind) => {
-            table.only(&PLACES)?;
-            kind
-        }
-        Named::Crc(width) => {
-            table.only(
-                &[&PLACES[..], &["poly", "init", "refin", "refout", "xorout", "check"]].concat(),
-            )?;
-            ChecksumKind::Crc(crc(table, width)?)
-        }
-    };
-    let order = table.choice("byte_order", &ORDERS)?.unwrap_or(order);
-    let size = kind.bytes();
-    let missing =
-        || table.problem("at", "missing, expected the offset of the checksum's first byte");
-    let at = place(table, "at", size, frame_bytes)?.ok_or_else(missing)?;
-    let from = place(table, "from", 0, frame_bytes)?.unwrap_or(0);
-    let to = place(table, "to", 0, frame_bytes)?.unwrap_or(at);
-    if from >= to {
-        let what =
-            format!("it covers the bytes from {from} to before {to}, expected one byte at least");
-        return Err(table.problem_of_all(what));
-    }
-    if at < to && at + size > from {
-        let what = format!(
-            "it covers the bytes from {from} to before {to}, expected bytes without the checksum itself, at {at}"
-        );
-        return Err(table.problem_of_all(what));
-    }
-    let pad_to = table.integer("pad_to", 1..=64)?.unwrap_or(1);
-    let number = FrameNumber::whole(at, NumberType::Unsigned(size as u8), order);
-    Ok(Some(FrameChecksum { kind, from, to, pad_to: usize::try_from(pad_to).unwrap_or(1), number }))
-}
-
-fn crc(table: &Table<'_>, width: u32) -> Result<DescribedCrc, DescriptionProblem> {
-    let most = (1i64 << width) - 1;
-    let word = |key: &str| -> Result<Option<u32>, DescriptionProblem> {
-        Ok(table.integer(key, 0..=most)?.and_then(|word| u32::try_from(word).ok()))
-    };
-    let needed = |key: &str, value: Option<u32>| {
-        value.ok_or_else(|| table.problem(key, "missing, expected a parameter of the CRC"))
-    };
-    let flag = |key: &str| -> Result<bool, DescriptionProblem> {
-        let what = "missing, expected true or false: whether bits are reflected";
-        table.boolean(key)?.ok_or_else(|| table.problem(key, what))
-    };
-    let crc = DescribedCrc::new(CrcParameters {
-        width,
-        poly: needed("poly", word("poly")?)?,
-        init: needed("init", word("init")?)?,
-        refin: flag("refin")?,
-        refout: flag("refout")?,
-        xorout: needed("xorout", word("xorout")?)?,
-    });
-    if let Some(check) = word("check")? {
-        let computed = crc.of(b"123456789".iter().copied());
-        if computed != check {
-            let what = format!(
-                "found {check:#x}, but these parameters give {computed:#x} of the characters 123456789"
-            );
-            return Err(table.problem("check", what));
-        }
-    }
-    Ok(crc)
 }

@@ -211,7 +211,7 @@ fn integer(node: &Node) -> Option<i64> {
 }
 
 /// Version of the format of descriptions.
-pub const VERSION: i64 = 1;
+pub const VERSION: i64 = 2;
 
 /// Error of a description.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -3,9 +3,9 @@
 use super::arrival::{Arrival, ArrivalClock};
 use super::bus::Bus;
 use crate::SourceError;
-use crate::described::decoder;
+use crate::described::port_decoder;
 use crate::traffic::traffic;
-use octant_account::Account;
+use octant_account::{Account, AccountEntry};
 use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingCounters, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
@@ -62,7 +62,7 @@ impl Feed {
             Speaks::Can(messages) => {
                 return Ok(Self::Bus(Box::new(Bus::open(uri, messages, folder)?)));
             }
-            line => decoder(line, instrument.count, folder)?,
+            line => port_decoder(line, instrument.count, folder)?,
         };
         let decoder = decoder.ok_or_else(|| gone("it speaks no protocol of a line".to_owned()))?;
         let port = match port::open_instrument(uri) {
@@ -133,7 +133,12 @@ impl Feed {
     /// Adds the losses on a bus to an account.
     pub(super) fn losses(&self, account: Account) -> Account {
         match self {
-            Self::Line(_) => account,
+            Self::Line(line) => {
+                let again = line.connection.made.saturating_sub(1);
+                let kind =
+                    "connections that were closed and made again: what came meanwhile is lost";
+                account.note(AccountEntry::new(again, kind))
+            }
             Self::Bus(bus) => bus.losses(account),
         }
     }
@@ -225,7 +230,10 @@ impl Line {
                         Some(reading) => return Some(reading),
                         None => continue,
                     },
-                    None => self.connection.is_new = false,
+                    None => {
+                        self.connection.is_new = false;
+                        self.decoder.begin_anywhere();
+                    }
                 }
             }
             let mut bytes = &self.buffer[self.rest.clone()];

@@ -24,7 +24,7 @@ use self::known_stamps::KnownClock;
 use self::pulses::Pulses;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
-use crate::described::decoder;
+use crate::described::port_decoder;
 use crate::rate_check::RateCheck;
 use crate::sampled::account;
 use octant_account::{Account, AccountEntry, Weight};
@@ -83,7 +83,7 @@ impl LiveSource {
         match &instrument.speaks {
             Speaks::Can(messages) => bus::check(messages, &scenario.folder)?,
             line => {
-                decoder(line, instrument.count, &scenario.folder)?;
+                port_decoder(line, instrument.count, &scenario.folder)?;
             }
         }
         match &scenario.drive {

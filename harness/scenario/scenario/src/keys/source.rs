@@ -316,7 +316,7 @@ keys! {
 keys! {
     /// `[source.mcap]`.
     pub(crate) struct McapKeys {
-        topic: String = text(), required, "Topic of the inertial samples.";
+        topic: String = text(), required, "Topic of the inertial samples, or of the gyros.";
         time_field: Option<String> = text(), derived("the message's log time"),
             "Dotted name of the field with the time stamp, a number.";
         nanoseconds_field: At<Option<String>> = text(), absent("the time stamp is one number"),
@@ -349,6 +349,8 @@ sensor! {
 sensor! {
     /// `[source.mcap.accelerometer]`.
     McapAccelerometerKeys {
+        topic: Option<String> = text(), derived("source.mcap.topic"),
+            "Topic of the accelerometers, where it isn't that of the gyros: messages with equal stamps are taken together.";
         x: String = text(), required, "Dotted name of the field of x.";
         y: String = text(), required, "Field of y.";
         z: String = text(), required, "Field of z.";

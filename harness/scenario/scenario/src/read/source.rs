@@ -158,6 +158,7 @@ fn read_mcap(keys: &McapKeys, sample_period_ns: u64) -> Result<McapMapping, Prob
     check_rate(&keys.rate, keys.split, sample_period_ns)?;
     Ok(McapMapping {
         topic: keys.topic.clone(),
+        accelerometer_topic: keys.accelerometer.topic.clone().filter(|topic| *topic != keys.topic),
         gyro,
         accelerometer,
         quantity,
