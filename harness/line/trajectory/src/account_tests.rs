@@ -1,6 +1,6 @@
 //! Accounts of files: each unit is used or left out for a reason, gaps are named, and likeness is told.
 
-use crate::likeness::Likeness;
+use crate::likeness::{Differences, Likeness};
 use crate::reader::TrajectoryReader;
 use crate::survey::TrajectorySurvey;
 use octant_account::Account;
@@ -242,6 +242,57 @@ fn a_rounded_or_late_copy_is_known_by_its_differences() {
     let left = beside.after_delay().unwrap();
     assert!(left.mean > 1.3, "{left:?}");
     assert!(!likeness(|_| [0.0; 2]).varies() && rounded.varies());
+}
+
+/// Numbers of a normal distribution (splitmix64, Box and Muller).
+fn normals() -> impl Iterator<Item = f64> {
+    let mut state = 7_u64;
+    let mut uniform = move || {
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    std::iter::from_fn(move || {
+        let (radius, angle) = (libm::sqrt(-2.0 * libm::log(1.0 - uniform())), uniform());
+        Some(radius * libm::cos(2.0 * std::f64::consts::PI * angle))
+    })
+}
+
+#[test]
+fn independent_references_are_called_too_like_once_in_a_hundred_at_most() {
+    // Runs in which the reference has so many independent errors, each for as long as the others; computed by numpy for
+    // 200 000 runs: 0.78, 0.58, 0.38, 0.22 and 0.01 % on two axes, 0.88, 0.69, 0.46, 0.36 and 0.06 % on one.
+    let mut normal = normals();
+    let runs = 20_000;
+    let expected =
+        [[0.0088, 0.0078], [0.0069, 0.0058], [0.0046, 0.0038], [0.0036, 0.0022], [0.0006, 0.0001]];
+    for (draws, expected) in [1, 2, 3, 4, 10].into_iter().zip(expected) {
+        for (axes, expected) in [1, 2].into_iter().zip(expected) {
+            let mut called = 0_u32;
+            for _ in 0..runs {
+                let (mut sum, mut square) = ([0.0; 2], 0.0);
+                for _ in 0..draws {
+                    for sum in &mut sum[..axes] {
+                        let error = normal.next().unwrap();
+                        *sum += error;
+                        square += error * error;
+                    }
+                }
+                let n = f64::from(draws);
+                let mean = libm::hypot(sum[0] / n, sum[1] / n);
+                let scatter = libm::sqrt((square / n - mean * mean).max(0.0) / axes as f64);
+                let differences = Differences { scatter, mean, delay_s: None };
+                called += u32::from(differences.is_too_small(axes, 1.0));
+            }
+            let share = f64::from(called) / f64::from(runs);
+            // Four standard deviations of a count.
+            let within = 4.0 * libm::sqrt(expected / f64::from(runs));
+            assert!((share - expected).abs() < within, "{draws} {axes}: {share}, {expected}");
+            assert!(share < 0.01 + within);
+        }
+    }
 }
 
 /// A line of a log at a second: position of two talkers, velocity, date, attitude, deviations, damage, late, other kinds.

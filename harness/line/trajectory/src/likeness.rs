@@ -5,6 +5,11 @@
 //! taken of the differences as they are, and of what is left of them after the best fit of a delay τ: a solution that is τ late
 //! is off by -τ v + τ²/2 a, with velocity v and acceleration a of the reference.
 
+/// Largest scatter of differences that is too small, in σ of the reference.
+const SCATTER: f64 = 0.5;
+/// Largest mean that is too small, in σ, of one axis and of two: sqrt(0.75 q), with the quantile q of 1 % of χ² with as many
+/// degrees of freedom, 1.5709e-4 and 0.020101.
+const MEANS: [f64; 2] = [0.010_854, 0.122_78];
 /// Shortest time between two points that are taken, ns: the digits of a reference would spoil its velocity.
 const STEP_NS: u64 = 500_000_000;
 /// Longest one over which a velocity is taken, ns.
@@ -36,6 +41,20 @@ pub struct Differences {
     pub mean: f64,
     /// Delay of the solution, s, whose effect was taken out first; `None`: none was.
     pub delay_s: Option<f64>,
+}
+
+impl Differences {
+    /// Returns whether differences on so many axes, one or two, are too small for a reference of this standard deviation.
+    ///
+    /// The differences of a solution that is independent of its reference contain the errors of the reference, of σ on each axis.
+    /// However these are spread between a constant and a part that changes, both parts can't be small: σ² is their sum. A
+    /// scatter below 0.5 σ leaves three quarters of it or more for the constant, and the mean of so many axes is then
+    /// below its limit with a probability of 1 %. Errors of a few independent draws lie between, and are less probable still.
+    #[must_use]
+    pub fn is_too_small(&self, axes: usize, sigma: f64) -> bool {
+        let mean = MEANS[axes.clamp(1, MEANS.len()) - 1];
+        self.scatter < SCATTER * sigma && self.mean < mean * sigma
+    }
 }
 
 impl Likeness {

@@ -10,7 +10,7 @@ use super::reader::{TrajectoryError, TrajectoryReader};
 use super::survey::TrajectorySurvey;
 use super::tally::Tally;
 use super::track::{ReferencePoint, ReferenceTrack, q_nc};
-use octant_account::Account;
+use octant_account::{Account, AccountEntry};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::FileNameError;
 use octant_scenario::trajectory::{SolutionSpec, TrajectorySpec};
@@ -347,6 +347,9 @@ impl SolutionPairs {
     #[must_use]
     pub fn accounts(&self) -> Vec<Account> {
         let points = self.points.account("points of the solution", POINT);
+        let rest = self.survey.points.saturating_sub(points.read());
+        let points =
+            points.left_out(AccountEntry::new(rest, "points after the time that is scored"));
         let zero_ns = self.first_ns.unwrap_or(self.from_ns);
         let reference = self.of_reference.account.clone();
         vec![

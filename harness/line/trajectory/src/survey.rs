@@ -3,7 +3,7 @@
 use super::point::{TimeScale, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
 use super::tally::OUT_OF_ORDER;
-use octant_account::Account;
+use octant_account::{Account, AccountEntry};
 use octant_scenario::trajectory::TrajectoryFormat;
 use std::path::Path;
 
@@ -103,6 +103,13 @@ impl TrajectorySurvey {
         let span_ns = (span_ns.0, heard_ns.unwrap_or(span_ns.1));
         let period_ns = whole_rate(period_ns, alike_ns as f64 / alike.max(1) as f64);
         let most = |count: u64| count as f64 >= SHARE * points as f64;
+        let mut account = reader.account(role);
+        for (count, name) in [(velocities, "velocity"), (attitudes, "attitude")] {
+            if !most(count) {
+                let kind = format!("points with a {name}, too few for it to count");
+                account = account.note(AccountEntry::new(count, kind));
+            }
+        }
         Ok(Self {
             scale: reader.scale(),
             first,
@@ -111,7 +118,7 @@ impl TrajectorySurvey {
             period_ns: period_ns.max(1),
             velocity: most(velocities),
             attitude: most(attitudes),
-            account: reader.account(role),
+            account,
         })
     }
 }

@@ -264,6 +264,16 @@ fn a_late_row_is_left_out_and_an_offset_may_be_a_clocks_whole_age() {
     let words = "left out: 1 out of order, of a time that isn't after a point before them, the first line 2001: \
                  found a time 1899.000000000 s before the point before it";
     assert!(text.contains(words), "{text}");
+    // Each point has its reason, also of those before and after the time that is scored.
+    let part = ["--offset", "1795694400 s", "--skip", "10 min", "--duration", "30 min"];
+    let (found, text) = scored(here, &part);
+    assert_eq!(found, Some(0), "{text}");
+    assert!(
+        text.contains("points of the solution: 3601 points read, 1800 used, 1801 left out"),
+        "{text}"
+    );
+    assert!(text.contains("600 points before the time that is scored"), "{text}");
+    assert!(text.contains("1201 points after the time that is scored"), "{text}");
     // Where it is the rule, the file isn't one.
     let mut backward: Vec<&str> = solution.lines().skip(1).collect();
     backward.reverse();
