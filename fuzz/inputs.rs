@@ -113,6 +113,7 @@ pub(crate) fn text(bytes: &[u8]) {
             delimiter,
             comment: "#".to_owned(),
             skip_lines: 0,
+            header: false,
             gimbal: None,
             temperature: None,
         };

@@ -191,6 +191,7 @@ impl Parts {
                 velocity_east_error_mps: None,
                 slope_window: None,
                 marks: BTreeMap::new(),
+                gaps: None,
                 series_hours: Vec::new(),
             }),
             alignment: None,

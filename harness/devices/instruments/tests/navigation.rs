@@ -73,6 +73,15 @@ const XS_INVALID: &str =
     "faff362910100c2cb4178007e4021d173b3b07504310404aa00000000000c01a000000000000e0200400000001b5";
 const XS_OWN: &str = "faff361a1060040001e240504310404aa00000000000c01a00000000000073";
 
+/// UTC whose leap seconds aren't known, and Xsens' status byte with the filter invalid, without and with a GNSS fix.
+const SBG_UTC_WITHOUT_LEAP: &str = "ff5a02001500e05ef8ff4700e407021d173b3b8017b42c0000000037f633";
+const XS_BYTE_INVALID: &str =
+    "faff362610100c2cb4178007e4021d173b3b07504310404aa00000000000c01a000000000000e0100105c7";
+const XS_BYTE_NO_FIX: &str =
+    "faff362610100c2cb4178007e4021d173b3b07504310404aa00000000000c01a000000000000e0100103c9";
+const XS_BYTE_FIX: &str =
+    "faff362610100c2cb4178007e4021d173b3b07504310404aa00000000000c01a000000000000e0100107c5";
+
 const ALL: [NavigationProtocol; 4] = [
     NavigationProtocol::Novatel,
     NavigationProtocol::Sbg,
@@ -157,6 +166,10 @@ fn lines_of_novatel_are_read() {
     for (found, expected) in attitude.into_iter().zip([0.138023492, 0.069459386, 90.000923268]) {
         near(found, expected, 1e-12);
     }
+    assert_eq!(reading.quality, Some("INS_SOLUTION_GOOD"));
+    assert_eq!(reading.sigma.position_m, Some([0.9428, 0.6688, 1.4746]));
+    assert_eq!(reading.sigma.velocity_mps, Some([0.0430, 0.0518, 0.0521]));
+    near(reading.sigma.attitude_rad.unwrap()[2].to_degrees(), 1.000131845, 1e-12);
     let short = "%INSPVASA,2083,374524.200;2083,374524.200000000,31.51668826020,120.38636567293,13.9998,13.1095,-12.9404,\
                  -0.0070,2.093819658,2.854168081,316.626703726,INS_SOLUTION_GOOD*8fc5adb1\r\n";
     let found = readings(NavigationProtocol::Novatel, short.as_bytes(), 1);
@@ -182,6 +195,8 @@ fn binary_logs_of_novatel_are_read() {
         assert!(reading.position_rad.is_some() && reading.attitude_rad.is_some());
         assert!(reading.height_m.is_some() && reading.velocity_mps.is_some());
         is_the_state(&reading);
+        let stated = if hex == INSPVAX { Some([0.5; 3]) } else { None };
+        assert_eq!(reading.sigma.position_m, stated);
     }
     // The status before the solution is good: the same frame with another one has another checksum, so it is cut out here.
     let mut waiting = bytes(INSPVAS);
@@ -208,8 +223,19 @@ fn sbg_tells_utc_across_the_roll_over_of_its_clock() {
     }
     assert!(position.position_rad.is_some() && position.velocity_mps.is_some());
     assert!(euler.attitude_rad.is_some() && quaternion.attitude_rad.is_some());
-    // Without UTC the clock is the unit's own.
+    // Without UTC the clock is the unit's own, and so without its leap seconds, up to 18 s of it.
     assert_eq!(one(NavigationProtocol::Sbg, SBG_NAV).time, NavigationTime::Own(250_000_000));
+    let all = [SBG_UTC_WITHOUT_LEAP, SBG_NAV].map(bytes).concat();
+    let found = readings(NavigationProtocol::Sbg, &all, 5);
+    assert!(matches!(found[..], [NavigationReading { time: NavigationTime::Own(_), .. }]));
+    assert_eq!(position.quality, Some("mode 4 (position, velocity, attitude and heading)"));
+    for (sigma, expected) in [
+        (position.sigma.position_m, 1.0),
+        (position.sigma.velocity_mps, 0.1),
+        (euler.sigma.attitude_rad, 0.1),
+    ] {
+        sigma.unwrap().iter().for_each(|sigma| near(*sigma, expected, 1e-7));
+    }
 }
 
 #[test]
@@ -243,6 +269,11 @@ fn xsens_is_read_in_all_axes_and_precisions() {
     assert!(one(NavigationProtocol::Xsens, XS_ENU).height_m.is_some());
     assert!(one(NavigationProtocol::Xsens, XS_NED).velocity_mps.is_some());
     assert!(one(NavigationProtocol::Xsens, XS_INVALID).position_rad.is_none());
+    assert!(one(NavigationProtocol::Xsens, XS_BYTE_INVALID).position_rad.is_none());
+    let [without, with] =
+        [XS_BYTE_NO_FIX, XS_BYTE_FIX].map(|hex| one(NavigationProtocol::Xsens, hex));
+    assert!(without.position_rad.is_some() && without.quality == Some("no GNSS fix"));
+    assert!(with.position_rad.is_some() && with.quality == Some("a GNSS fix"));
     let own = one(NavigationProtocol::Xsens, XS_OWN);
     assert_eq!(own.time, NavigationTime::Own(12_345_600_000));
     // A frame of a real unit, as a user published it: sample time and Euler angles, east, north, up.

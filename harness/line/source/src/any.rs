@@ -13,6 +13,7 @@ use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
+use octant_trajectory::Comparison;
 
 /// A source of any kind.
 pub struct AnySource {
@@ -135,6 +136,10 @@ impl Source for AnySource {
 
     fn accounts(&self) -> Vec<Account> {
         each!(&self.kind, source => source.accounts())
+    }
+
+    fn compared(&self) -> Option<&Comparison> {
+        each!(&self.kind, source => source.compared())
     }
 
     fn ahead(&self) -> Option<Box<dyn Source + Send>> {

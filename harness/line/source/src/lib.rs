@@ -47,6 +47,7 @@ use octant_recorder::event::BenchRecord;
 pub use octant_sample::Epoch;
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
+use octant_trajectory::Comparison;
 
 /// A source of epochs.
 pub trait Source {
@@ -115,6 +116,12 @@ pub trait Source {
     /// samples. Known only at the end.
     fn accounts(&self) -> Vec<Account> {
         Vec::new()
+    }
+
+    /// Returns what the comparison of a solution with its reference shows besides the errors; `None` for every other
+    /// source. Known only at the end.
+    fn compared(&self) -> Option<&Comparison> {
+        None
     }
 
     /// Returns a copy that goes on from here by itself, where the source is a simulation of its own.

@@ -4,6 +4,7 @@ use super::SourceError;
 use csv::StringRecord;
 use octant_base::decimal::decimal_ns;
 use octant_base::number::counted;
+use octant_base::utc;
 use octant_scenario::recorded::{Delimiter, RecordedColumn, TimeUnit};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -58,6 +59,13 @@ impl Rows {
             if !rows.advance()? {
                 return Err(rows
                     .error("the file ends, expected a line with the names of the columns".into()));
+            }
+            // A first row of data would be taken for names, and be lost.
+            if rows.fields.iter().all(|field| field.parse::<f64>().is_ok()) {
+                return Err(rows.error(
+                    "found a row of numbers, expected the names of the columns: header = false has a file without them"
+                        .into(),
+                ));
             }
             rows.header = Some(rows.fields.clone());
         }
@@ -178,11 +186,17 @@ impl Rows {
         }
     }
 
-    /// Returns a field as a time, ns.
+    /// Returns a field as a time, ns: a number, or a date with a time of day, whose two parts may be two fields.
     pub(super) fn time_ns(&self, index: usize, unit: TimeUnit) -> Result<u64, SourceError> {
         let text = self.field(index)?;
+        if let Some(time) = utc::written(text, self.fields.get(index + 1)) {
+            let found = u64::try_from(time.since_1970_ns).ok();
+            return found.ok_or_else(|| {
+                self.column_error(index, format!("found {text:?}, expected a time from 1970 on"))
+            });
+        }
         decimal_ns(text, unit.nanosecond_exponent()).ok_or_else(|| {
-            let reason = format!("found {text:?}, expected a time from 0 to 2^64 ns");
+            let reason = format!("found {text:?}, expected a time from 0 to 2^64 ns, a number or such as 2027-03-31T08:00:00.5Z");
             self.column_error(index, reason)
         })
     }

@@ -1,12 +1,13 @@
 //! Times and truth of a solution that is scored: there are no samples.
 
 use super::{Epoch, Source, SourceError};
+use octant_account::Account;
 use octant_plant::Truth;
 use octant_sample::time::SimulatedTime;
 use octant_sample::{DeviceTime, GimbalCommand, Sample, Status};
 use octant_scenario::Scenario;
 use octant_scenario::trajectory::SolutionSpec;
-use octant_trajectory::{PairsError, SolutionPair, SolutionPairs};
+use octant_trajectory::{Comparison, PairsError, SolutionPair, SolutionPairs};
 
 /// The reference at the times of a solution.
 pub struct SolutionSource {
@@ -75,5 +76,13 @@ impl Source for SolutionSource {
 
     fn cut_short(&self) -> Option<String> {
         self.pairs.doubt()
+    }
+
+    fn accounts(&self) -> Vec<Account> {
+        self.pairs.accounts()
+    }
+
+    fn compared(&self) -> Option<&Comparison> {
+        Some(self.pairs.comparison())
     }
 }

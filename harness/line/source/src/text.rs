@@ -9,9 +9,7 @@ use octant_base::number::counted;
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
-use octant_scenario::recorded::{
-    AxisColumn, RecordedColumn, TemperatureUnit, TextFiles, TextMapping, TimeUnit,
-};
+use octant_scenario::recorded::{AxisColumn, TemperatureUnit, TextFiles, TextMapping, TimeUnit};
 use std::path::Path;
 
 /// Number of rows whose interval is looked at, for a table without a rate.
@@ -209,18 +207,13 @@ impl File {
         gyro: bool,
         accel: bool,
     ) -> Result<Self, SourceError> {
-        let axes = mapping.gyro.iter().chain(&mapping.accelerometer);
-        let gimbal = mapping.gimbal.iter().flat_map(|gimbal| [&gimbal.azimuth, &gimbal.roll]);
-        let time = mapping.time.iter().map(|time| &time.column);
-        let temperature = mapping.temperature.iter().map(|temperature| &temperature.column);
-        let named = axes
-            .chain(gimbal)
-            .map(|axis| &axis.column)
-            .chain(time)
-            .chain(temperature)
-            .any(|column| matches!(column, RecordedColumn::Name(_)));
-        let rows =
-            Rows::open(path, mapping.delimiter, &mapping.comment, mapping.skip_lines, named)?;
+        let rows = Rows::open(
+            path,
+            mapping.delimiter,
+            &mapping.comment,
+            mapping.skip_lines,
+            mapping.header,
+        )?;
         let axis = |axis: &AxisColumn| -> Result<Resolved, SourceError> {
             Ok(Resolved {
                 index: rows.column(&axis.column)?,

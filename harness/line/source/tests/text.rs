@@ -26,6 +26,7 @@ fn mapping(files: TextFiles) -> TextMapping {
         delimiter: Delimiter::Character(b','),
         comment: "#".into(),
         skip_lines: 0,
+        header: false,
         gimbal: None,
         temperature: None,
     }
@@ -92,6 +93,7 @@ fn names_signs_order_increments_and_gimbals() {
             scale,
         };
         mapping.delimiter = Delimiter::Character(b';');
+        mapping.header = true;
         mapping.quantity = RecordedQuantity::Increments;
         mapping.time = Some(TimeColumn {
             column: RecordedColumn::Name("t_ms".into()),
@@ -183,6 +185,7 @@ fn errors_name_line_and_column() {
     }
     let found = error("t,a,b\n1,2,3\n", |mapping| {
         mapping.gyro[0].column = RecordedColumn::Name("wx".into());
+        mapping.header = true;
     });
     assert!(found.contains("line 1: no column \"wx\", found t, a, b"), "{found}");
     let found = error("", |mapping| mapping.skip_lines = 2);
@@ -199,6 +202,7 @@ fn errors_name_line_and_column() {
 fn a_header_with_another_delimiter_is_hinted_at() {
     let named = |mapping: &mut TextMapping, delimiter| {
         mapping.delimiter = delimiter;
+        mapping.header = true;
         mapping.time =
             Some(TimeColumn { column: RecordedColumn::Name("t".into()), unit: TimeUnit::Second });
     };
@@ -251,6 +255,56 @@ fn two_files_have_to_agree() {
     let shifted = file(&folder, "d.txt", "0.01 4 5 6\n0.0201 4 5 6\n");
     let found = split(shifted).unwrap_err().to_string();
     assert!(found.contains("d.txt: line 2: stamp 20100000 ns, expected 20000000 ns"), "{found}");
+}
+
+#[test]
+fn a_header_is_skipped_in_every_file_whatever_names_the_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |header: &str| format!("{header}0.01 1 2 3\n0.02 1 2 3\n");
+    let split = |gyro: String, accelerometer: String| {
+        let mut mapping = mapping(TextFiles::Split {
+            gyro: file(&folder, "g.txt", &gyro),
+            accelerometer: file(&folder, "a.txt", &accelerometer),
+        });
+        mapping.delimiter = Delimiter::Blanks;
+        mapping.accelerometer = [2, 3, 4].map(|column| axis(column, 0.0, 1.0));
+        mapping.header = true;
+        all(&mut TextSource::open(&mapping)?)
+    };
+    let epochs = split(rows("t gx gy gz\n"), rows("t ax ay az\n")).unwrap();
+    assert_eq!(epochs.len(), 2);
+    assert_eq!(epochs[0].sample.device_time.ns, 10_000_000);
+    // Without names the first row of data would be lost in silence.
+    let found = split(rows("t gx gy gz\n"), rows("")).unwrap_err().to_string();
+    assert!(found.contains("a.txt: line 1: found a row of numbers, expected the names"), "{found}");
+}
+
+#[test]
+fn stamps_may_be_dates_with_a_time_of_day() {
+    let stamps = |text: &str, delimiter: Delimiter, first: usize| -> Vec<u64> {
+        let epochs = read(text, |mapping| {
+            mapping.delimiter = delimiter;
+            mapping.gyro = [0, 1, 2].map(|axis_| axis(first + axis_, 0.0, 1.0));
+            mapping.accelerometer = [3, 4, 5].map(|axis_| axis(first + axis_, 0.0, 1.0));
+        });
+        epochs.unwrap().iter().map(|epoch| epoch.sample.device_time.ns).collect()
+    };
+    // `date -u -d '2027-03-31 08:00:00' +%s`: 1806480000.
+    let expected = [1_806_480_000_000_000_000, 1_806_480_000_010_000_000];
+    let comma = Delimiter::Character(b',');
+    for [first, second] in [
+        ["2027-03-31T08:00:00Z", "2027-03-31T08:00:00.01Z"],
+        ["2027-03-31 08:00:00.000", "2027-03-31 08:00:00.010"],
+        ["2027/03/31 10:00:00+02:00", "2027/03/31 10:00:00.01+02:00"],
+    ] {
+        let text = format!("{first},0,0,0,0,0,9.8\n{second},0,0,0,0,0,9.8\n");
+        assert_eq!(stamps(&text, comma, 2), expected, "{text}");
+    }
+    // Two fields, where blanks are what separates fields.
+    let text = "2027-03-31 08:00:00 0 0 0 0 0 9.8\n2027-03-31 08:00:00.01 0 0 0 0 0 9.8\n";
+    assert_eq!(stamps(text, Delimiter::Blanks, 3), expected);
+    let found = error("2027-02-30 08:00:00,0,0,0,0,0,9.8\n", |_| {});
+    assert!(found.contains("line 1: column 1: found \"2027-02-30 08:00:00\", expected"), "{found}");
 }
 
 /// Returns the folder of real recordings, if they exist: by default one beside the repository.

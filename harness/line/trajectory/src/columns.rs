@@ -1,14 +1,15 @@
 //! Columns of text.
 
-use super::point::{LINE_BYTES_MAX, Points, TimeScale, TrajectoryPoint};
+use super::point::{LINE_BYTES_MAX, PointSigma, Points, TimeScale, TrajectoryPoint};
+use super::tally::Tally;
 use csv::StringRecord;
 use octant_base::decimal::decimal_ns;
 use octant_base::number::counted;
+use octant_base::utc;
 use octant_scenario::recorded::{Delimiter, RecordedColumn, TimeUnit};
 use octant_scenario::trajectory::TrajectoryColumns;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
-use std::time::UNIX_EPOCH;
 
 /// Names of the columns in Octant's exports, in the order of time, position, velocity, attitude.
 const NAMES: [&str; 9] = [
@@ -33,6 +34,8 @@ pub(crate) struct ColumnsReader {
     angle_rad: f64,
     velocity_mps: f64,
     scale: TimeScale,
+    /// True if a time said no offset from UTC.
+    unzoned: bool,
 }
 
 impl ColumnsReader {
@@ -118,6 +121,7 @@ impl ColumnsReader {
             angle_rad: columns.angle_rad,
             velocity_mps: columns.velocity_mps,
             scale: TimeScale::Own,
+            unzoned: false,
             lines,
         })
     }
@@ -126,15 +130,14 @@ impl ColumnsReader {
     fn time_ns(&mut self) -> Result<i64, String> {
         let (index, unit) = self.time;
         let text = self.lines.field(index)?;
-        let (found, scale) = if text.contains(':') {
-            let time = octant_base::utc::parse(text).ok();
-            let since = time.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-            (since.and_then(|since| i64::try_from(since.as_nanos()).ok()), TimeScale::Utc)
-        } else {
-            let ns = decimal_ns(text, unit.nanosecond_exponent());
-            (ns.and_then(|ns| i64::try_from(ns).ok()), TimeScale::Own)
+        let (found, scale, unzoned) = match utc::written(text, self.lines.fields.get(index + 1)) {
+            Some(time) => (Some(time.since_1970_ns), TimeScale::Utc, !time.zoned),
+            None => {
+                let ns = decimal_ns(text, unit.nanosecond_exponent());
+                (ns.and_then(|ns| i64::try_from(ns).ok()), TimeScale::Own, false)
+            }
         };
-        self.scale = scale;
+        (self.scale, self.unzoned) = (scale, self.unzoned || unzoned);
         found.ok_or_else(|| {
             let found = self.lines.field(index).unwrap_or_default();
             self.lines.error(index, &format!("found {found:?}, expected a time"))
@@ -144,8 +147,20 @@ impl ColumnsReader {
 
 impl Points for ColumnsReader {
     fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
-        if !self.lines.advance()? {
-            return Ok(None);
+        loop {
+            if !self.lines.advance()? {
+                return Ok(None);
+            }
+            // Programs write no number, or none that is one, where a unit has no position.
+            let no_number = |index: usize| {
+                let text = self.lines.fields.get(index);
+                text.is_some_and(|text| text.is_empty() || text.eq_ignore_ascii_case("nan"))
+            };
+            if !self.position.into_iter().all(no_number) {
+                break;
+            }
+            let line = self.lines.line;
+            self.lines.tally.left_out(1, "rows without a position", || format!("line {line}"));
         }
         let time_ns = self.time_ns()?;
         let lines = &self.lines;
@@ -163,6 +178,7 @@ impl Points for ColumnsReader {
             None => None,
             Some([roll, pitch, heading]) => Some([angle(roll)?, angle(pitch)?, angle(heading)?]),
         };
+        self.lines.tally.point(1);
         Ok(Some(TrajectoryPoint {
             time_ns,
             latitude_rad,
@@ -170,7 +186,25 @@ impl Points for ColumnsReader {
             height_m,
             velocity_mps,
             attitude_rad,
+            sigma: PointSigma::default(),
         }))
+    }
+
+    fn tally(&self) -> &Tally {
+        &self.lines.tally
+    }
+
+    fn tally_mut(&mut self) -> &mut Tally {
+        &mut self.lines.tally
+    }
+
+    fn unit(&self) -> [&'static str; 2] {
+        ["row", "rows"]
+    }
+
+    fn choices(&self) -> Vec<&'static str> {
+        let unzoned = "times without an offset from UTC are taken as UTC";
+        self.unzoned.then_some(unzoned).into_iter().collect()
     }
 
     fn place(&self) -> String {
@@ -190,6 +224,9 @@ struct Lines {
     text: String,
     line: u64,
     fields: StringRecord,
+    /// True after the first row that isn't a header.
+    within: bool,
+    tally: Tally,
 }
 
 impl Lines {
@@ -201,6 +238,8 @@ impl Lines {
             text: String::new(),
             line: 0,
             fields: StringRecord::new(),
+            within: false,
+            tally: Tally::default(),
         }
     }
 
@@ -216,6 +255,7 @@ impl Lines {
 
     fn header(&mut self) -> Result<StringRecord, String> {
         if self.advance()? {
+            self.within = false;
             Ok(self.fields.clone())
         } else {
             Err("the file ends, expected a line with the names of the columns".to_owned())
@@ -244,9 +284,22 @@ impl Lines {
             }
             let line = self.text.trim_start_matches('\u{feff}').trim_end_matches(['\r', '\n']);
             let is_comment = !self.comment.is_empty() && line.starts_with(&self.comment);
-            if line.trim().is_empty() || is_comment {
+            if line.trim().is_empty() {
                 continue;
             }
+            if is_comment {
+                // Comments before the rows say what the file is; between them they may be rows.
+                if self.within {
+                    let line = self.line;
+                    self.tally.left_out(
+                        1,
+                        "lines among the rows that begin with the comment mark",
+                        || format!("line {line}"),
+                    );
+                }
+                continue;
+            }
+            self.within = true;
             self.fields.clear();
             match self.delimiter {
                 Delimiter::Blanks => self.fields.extend(line.split_ascii_whitespace()),

@@ -7,10 +7,17 @@
 //! | [`survey`] | what a file holds, from one pass through it |
 //! | [`track`] | a reference trajectory at any time |
 //! | [`pairs`] | the points of a solution, each with its reference |
+//! | [`comparison`] | what both show besides the errors: likeness, bands by the reference's own σ |
 //!
 //! Nothing here is scored: a source and an endpoint of the harness give the points of two files to the run.
 
+#[cfg(test)]
+mod account_tests;
+mod bands;
 mod columns;
+pub mod comparison;
+mod gaps;
+mod likeness;
 mod messages;
 mod nmea;
 pub mod pairs;
@@ -19,10 +26,14 @@ pub mod reader;
 mod rtklib;
 mod sbet;
 pub mod survey;
+mod tally;
 #[cfg(test)]
 mod tests;
 pub mod track;
 
+pub use bands::StatedBand;
+pub use comparison::Comparison;
+pub use likeness::{Differences, Likeness};
 pub use pairs::{PairsError, SolutionPair, SolutionPairs};
 pub use point::{TimeScale, TrajectoryPoint};
 pub use reader::{TrajectoryError, TrajectoryReader};

@@ -3,7 +3,8 @@
 //! Messages of one time belong to one point. Once a unit knows GPS time or UTC its points have that; those before, which have
 //! its own clock alone, are left out, and so is what has no position that is valid. A unit that never knows it has a scale of its own.
 
-use super::point::{Points, TimeScale, TrajectoryPoint, gps_to_utc_ns};
+use super::point::{PointSigma, Points, TimeScale, TrajectoryPoint, gps_to_utc_ns};
+use super::tally::{OUT_OF_ORDER, Tally};
 use octant_instruments::FramingEvent;
 use octant_instruments::navigation::{
     NavigationDecoder, NavigationProtocol, NavigationReading, NavigationTime,
@@ -17,9 +18,28 @@ const PIECE: usize = 1 << 16;
 pub(crate) struct MessageReader {
     scale: TimeScale,
     messages: Messages,
-    begun: Option<(i64, NavigationReading)>,
+    begun: Option<Begun>,
     heard_ns: Option<i64>,
+    /// Latest time of a point.
+    given_ns: Option<i64>,
+    tally: Tally,
+    /// Frames of the decoder that are counted already: others, those that can't be decoded, damaged ones.
+    frames: [u64; 3],
 }
+
+/// A point whose messages are still coming.
+#[derive(Clone, Copy, Debug)]
+struct Begun {
+    time_ns: i64,
+    messages: u64,
+    reading: NavigationReading,
+}
+
+const FRAMES: [&str; 3] =
+    ["frames of other messages", "frames that can't be decoded", "frames that are damaged"];
+const NO_TIME: &str = "messages before the unit knew UTC or GPS time";
+const INVALID: &str = "messages in which the unit says that nothing is valid";
+const NO_POSITION: &str = "messages of times without a valid position";
 
 impl MessageReader {
     pub(crate) fn new(file: File, protocol: NavigationProtocol) -> Result<Self, String> {
@@ -44,7 +64,15 @@ impl MessageReader {
         let mut file = messages.file;
         file.rewind().map_err(|error| error.to_string())?;
         let scale = if is_utc { TimeScale::Utc } else { TimeScale::Own };
-        Ok(Self { scale, messages: Messages::new(file, protocol), begun: None, heard_ns: None })
+        Ok(Self {
+            scale,
+            messages: Messages::new(file, protocol),
+            begun: None,
+            heard_ns: None,
+            given_ns: None,
+            tally: Tally::default(),
+            frames: [0; 3],
+        })
     }
 
     fn time_ns(&self, time: NavigationTime) -> Option<i64> {
@@ -57,18 +85,73 @@ impl MessageReader {
 
     /// Takes a reading; returns the point that it ends.
     fn take(&mut self, reading: NavigationReading) -> Option<TrajectoryPoint> {
-        let time_ns = self.time_ns(reading.time)?;
+        let Some(time_ns) = self.time_ns(reading.time) else {
+            self.leave_out(1, NO_TIME);
+            return None;
+        };
+        let begun_ns = self.begun.map(|begun| begun.time_ns).or(self.given_ns);
+        if let Some(begun_ns) = begun_ns.filter(|begun_ns| time_ns < *begun_ns) {
+            let before_s = (begun_ns - time_ns) as f64 * 1e-9;
+            let place = self.place();
+            self.tally.left_out(1, OUT_OF_ORDER, || {
+                format!("{place}: found a time {before_s:.9} s before the point before it")
+            });
+            return None;
+        }
         self.heard_ns = self.heard_ns.max(Some(time_ns));
+        let NavigationReading { position_rad, height_m, velocity_mps, attitude_rad, .. } = reading;
+        if position_rad.is_none() && velocity_mps.is_none() && attitude_rad.is_none() {
+            self.leave_out(1, INVALID);
+            return None;
+        }
         match &mut self.begun {
-            Some((begun_ns, begun)) if *begun_ns == time_ns => {
-                begun.position_rad = begun.position_rad.or(reading.position_rad);
-                begun.height_m = begun.height_m.or(reading.height_m);
-                begun.velocity_mps = begun.velocity_mps.or(reading.velocity_mps);
-                begun.attitude_rad = begun.attitude_rad.or(reading.attitude_rad);
+            Some(begun) if begun.time_ns == time_ns => {
+                begun.messages += 1;
+                let begun = &mut begun.reading;
+                begun.position_rad = begun.position_rad.or(position_rad);
+                begun.height_m = begun.height_m.or(height_m);
+                begun.velocity_mps = begun.velocity_mps.or(velocity_mps);
+                begun.attitude_rad = begun.attitude_rad.or(attitude_rad);
+                begun.quality = begun.quality.or(reading.quality);
+                begun.sigma = begun.sigma.or(reading.sigma);
                 None
             }
-            begun => begun.replace((time_ns, reading)).and_then(point),
+            begun => {
+                let last = begun.replace(Begun { time_ns, messages: 1, reading });
+                last.and_then(|last| self.end(&last))
+            }
         }
+    }
+
+    fn leave_out(&mut self, messages: u64, reason: &'static str) {
+        let place = self.place();
+        self.tally.left_out(messages, reason, || place);
+    }
+
+    /// Counts the messages of a point that is complete; returns it, where it has a position.
+    fn end(&mut self, begun: &Begun) -> Option<TrajectoryPoint> {
+        let Some(point) = point(begun) else {
+            self.leave_out(begun.messages, NO_POSITION);
+            return None;
+        };
+        self.tally.point(begun.messages);
+        self.tally.quality(begun.reading.quality.unwrap_or("no stated mode"));
+        self.given_ns = Some(point.time_ns);
+        Some(point)
+    }
+
+    /// Counts the frames that the decoder passed over.
+    fn count_frames(&mut self) {
+        let counters = self.messages.decoder.counters();
+        let now = [
+            counters.other,
+            counters.unknown,
+            counters.checksum.saturating_add(counters.malformed),
+        ];
+        for (kind, (before, now)) in FRAMES.into_iter().zip(self.frames.into_iter().zip(now)) {
+            self.leave_out(now.saturating_sub(before), kind);
+        }
+        self.frames = now;
     }
 }
 
@@ -80,23 +163,33 @@ fn utc_ns(time: NavigationTime) -> Option<i64> {
     }
 }
 
-fn point((time_ns, reading): (i64, NavigationReading)) -> Option<TrajectoryPoint> {
+fn point(begun: &Begun) -> Option<TrajectoryPoint> {
+    let Begun { time_ns, reading, .. } = *begun;
     let [latitude_rad, longitude_rad] = reading.position_rad?;
+    let horizontal = |[north, east, _]: [f64; 3]| [north, east];
     Some(TrajectoryPoint {
         time_ns,
         latitude_rad,
         longitude_rad,
         height_m: reading.height_m.unwrap_or(0.0),
-        velocity_mps: reading.velocity_mps.map(|[north, east, _]| [north, east]),
+        velocity_mps: reading.velocity_mps.map(horizontal),
         attitude_rad: reading.attitude_rad,
+        sigma: PointSigma {
+            position_m: reading.sigma.position_m.map(horizontal),
+            velocity_mps: reading.sigma.velocity_mps.map(horizontal),
+            attitude_rad: reading.sigma.attitude_rad,
+        },
     })
 }
 
 impl Points for MessageReader {
     fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
         loop {
-            let Some(reading) = self.messages.next()? else {
-                return Ok(self.begun.take().and_then(point));
+            let next = self.messages.next()?;
+            self.count_frames();
+            let Some(reading) = next else {
+                let last = self.begun.take();
+                return Ok(last.and_then(|last| self.end(&last)));
             };
             let ended = self.take(reading);
             if ended.is_some() {
@@ -115,6 +208,18 @@ impl Points for MessageReader {
 
     fn heard_ns(&self) -> Option<i64> {
         self.heard_ns
+    }
+
+    fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    fn tally_mut(&mut self) -> &mut Tally {
+        &mut self.tally
+    }
+
+    fn unit(&self) -> [&'static str; 2] {
+        ["frame", "frames"]
     }
 }
 

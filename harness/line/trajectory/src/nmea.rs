@@ -9,12 +9,17 @@
 //! Which, is learned from the beginning of the file: its velocities are those of the positions around the one or the other.
 //!
 //! Several talkers may give the same quantity at the same time, as the parts of one receiver do. Where they differ by more
-//! than their last digits, they are different instruments, and the file is refused with their names.
+//! than their last digits, they are different instruments, and the file is refused with their names, unless one is chosen.
+//!
+//! Each line is counted: it belongs to a point, or is left out for a reason. A sentence of a time before the present point, as a
+//! logger writes it that was late, is left out.
 
 mod sentence;
 
-use self::sentence::{Said, Sentence, lacks_checksum};
-use super::point::{LINE_BYTES_MAX, Points, SECOND_NS, TimeScale, TrajectoryPoint};
+use self::sentence::{Said, Sentence, Talker, UNSUMMED};
+use super::point::{LINE_BYTES_MAX, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint};
+use super::tally::{OUT_OF_ORDER, Tally};
+use octant_scenario::trajectory::NmeaChoice;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
 
@@ -29,114 +34,238 @@ const VELOCITIES_LEAST: u32 = 5;
 
 pub(crate) struct NmeaReader {
     lines: NmeaLines,
+    choice: NmeaChoice,
     /// Day of the last sentence with a time, ns since 1970, and its time of day.
     day_ns: i64,
     last_of_day_ns: Option<i64>,
     begun: Option<Begun>,
+    /// Time of the last point that was given.
+    given_ns: Option<i64>,
     /// True if a VTG belongs to the point after it; then the one that waits for it.
     velocity_leads: bool,
     waits: Option<Said<2>>,
     heard_ns: Option<i64>,
+    tally: Tally,
 }
 
 /// A point whose sentences are still coming.
 #[derive(Clone, Copy, Debug, Default)]
 struct Begun {
+    time_ns: i64,
     of_day_ns: i64,
-    day_ns: i64,
+    /// Sentences that said something of it, and the line of the first.
+    sentences: u64,
+    line: u64,
     position: Option<Said<2>>,
     height_m: Option<Said<1>>,
     velocity_mps: Option<Said<2>>,
-    attitude_rad: Option<[f64; 3]>,
+    attitude_rad: Option<Said<3>>,
+    sigma_m: Option<[f64; 2]>,
+    attitude_sigma_rad: Option<[f64; 3]>,
+    quality: Option<&'static str>,
 }
 
+const OTHER_TALKERS: &str = "sentences of other talkers";
+const ESTIMATED: &str = "sentences with an estimated position, which is no fix";
+const FURTHER: &str = "velocities without a time, besides the first of their position";
+const NO_POSITION: &str = "sentences of times without a position";
+
 impl NmeaReader {
-    pub(crate) fn new(file: File) -> Result<Self, String> {
+    pub(crate) fn new(file: File, choice: &NmeaChoice) -> Result<Self, String> {
         let mut lines = NmeaLines::new(file);
         let first_day_ns = first_day(&mut lines)?;
         let mut file = lines.file.into_inner();
         file.rewind().map_err(|error| error.to_string())?;
         let mut lines = NmeaLines::new(file);
-        let velocity_leads = velocity_leads(&mut lines)?;
+        let velocity_leads = velocity_leads(&mut lines, choice)?;
         let mut file = lines.file.into_inner();
         file.rewind().map_err(|error| error.to_string())?;
         Ok(Self {
             lines: NmeaLines::new(file),
+            choice: choice.clone(),
             day_ns: first_day_ns,
             last_of_day_ns: None,
             begun: None,
+            given_ns: None,
             velocity_leads,
             waits: None,
             heard_ns: None,
+            tally: Tally::default(),
         })
+    }
+
+    /// Counts the present line as left out.
+    fn leave_out(&mut self, reason: &'static str) {
+        let line = self.lines.line;
+        self.tally.left_out(1, reason, || format!("line {line}"));
+    }
+
+    /// Day of a time of day: that of the sentence, else the one that brings it nearest to the time before.
+    fn day_of(&self, sentence: &Sentence, of_day_ns: i64) -> i64 {
+        let nearest = |last_ns: i64| match of_day_ns - last_ns {
+            after if after < -DAY_NS / 2 => self.day_ns + DAY_NS,
+            after if after > DAY_NS / 2 => self.day_ns - DAY_NS,
+            _ => self.day_ns,
+        };
+        sentence.day_ns.unwrap_or_else(|| self.last_of_day_ns.map_or(self.day_ns, nearest))
     }
 
     /// Takes a sentence; returns the point that it ends.
     ///
     /// # Errors
     /// If its talker contradicts another one.
-    fn take(&mut self, sentence: &Sentence) -> Result<Option<TrajectoryPoint>, String> {
+    fn take(&mut self, sentence: Sentence) -> Result<Option<TrajectoryPoint>, String> {
+        let sentence = chosen(sentence, &self.choice);
         let mut ended = None;
         if let Some(of_day_ns) = sentence.of_day_ns {
-            let midnight = |last_ns: i64| of_day_ns + DAY_NS / 2 < last_ns;
-            self.day_ns = match sentence.day_ns {
-                Some(day_ns) => day_ns,
-                None if self.last_of_day_ns.is_some_and(midnight) => self.day_ns + DAY_NS,
-                None => self.day_ns,
-            };
-            self.last_of_day_ns = Some(of_day_ns);
-            self.heard_ns = self.heard_ns.max(Some(self.day_ns + of_day_ns));
-            if sentence.is_date_alone {
+            let day_ns = self.day_of(&sentence, of_day_ns);
+            let time_ns = day_ns + of_day_ns;
+            // The point that a position has fixed in time, or the one before.
+            let fixed_ns = self.begun.filter(|begun| begun.position.is_some());
+            let fixed_ns = fixed_ns.map(|begun| begun.time_ns).or(self.given_ns);
+            if let Some(fixed_ns) = fixed_ns.filter(|fixed_ns| time_ns < *fixed_ns) {
+                let before_s = (fixed_ns - time_ns) as f64 * 1e-9;
+                let line = self.lines.line;
+                self.tally.left_out(1, OUT_OF_ORDER, || {
+                    format!("line {line}: found a time {before_s:.9} s before the point before it")
+                });
                 return Ok(None);
             }
-            let day_ns = self.day_ns;
+            (self.day_ns, self.last_of_day_ns) = (day_ns, Some(of_day_ns));
+            self.heard_ns = self.heard_ns.max(Some(time_ns));
+            if let Some(reason) = sentence.left_out {
+                self.leave_out(reason);
+            }
+            if sentence.is_date_alone {
+                if sentence.left_out.is_none() {
+                    self.tally.used(1);
+                }
+                return Ok(None);
+            }
             match &mut self.begun {
-                Some(begun) if begun.of_day_ns == of_day_ns => begun.day_ns = day_ns,
+                Some(begun) if begun.of_day_ns == of_day_ns => begun.time_ns = time_ns,
                 begun => {
-                    ended = begun.take().and_then(|begun| begun.point());
+                    let last = begun.take();
                     let velocity_mps = self.waits.take();
-                    *begun = Some(Begun { of_day_ns, day_ns, velocity_mps, ..Begun::default() });
+                    let sentences = u64::from(velocity_mps.is_some());
+                    let line = self.lines.line;
+                    *begun = Some(Begun {
+                        time_ns,
+                        of_day_ns,
+                        velocity_mps,
+                        sentences,
+                        line,
+                        ..Begun::default()
+                    });
+                    ended = last.and_then(|last| self.end(&last));
                 }
             }
+        } else if let Some(reason) = sentence.left_out {
+            self.leave_out(reason);
         } else if self.velocity_leads {
+            if self.waits.take().is_some() {
+                self.leave_out(NO_POSITION);
+            }
             self.waits = sentence.velocity_mps;
             return Ok(None);
         }
-        if let Some(begun) = &mut self.begun {
-            Said::keep(&mut begun.position, sentence.position, "positions", |one, other| {
-                let [north, east] = [0, 1].map(|axis| one.value[axis] - other.value[axis]);
-                let east = east * libm::cos(one.value[0]);
-                format!("{:.1} m", libm::hypot(north, east) * EARTH_RADIUS_M)
-            })?;
-            Said::keep(&mut begun.height_m, sentence.height_m, "heights", |one, other| {
-                format!("{:.2} m", (one.value[0] - other.value[0]).abs())
-            })?;
-            Said::keep(
-                &mut begun.velocity_mps,
-                sentence.velocity_mps,
-                "velocities",
-                |one, other| {
-                    let [north, east] = [0, 1].map(|axis| one.value[axis] - other.value[axis]);
-                    format!("{:.2} m/s", libm::hypot(north, east))
-                },
-            )?;
-            begun.attitude_rad = begun.attitude_rad.or(sentence.attitude_rad);
+        match &mut self.begun {
+            _ if sentence.left_out.is_some() => {}
+            // A VTG has no time: of those that come more often than positions the first is that of the position.
+            Some(begun) if sentence.of_day_ns.is_none() && begun.has_velocity_of(&sentence) => {
+                self.leave_out(FURTHER);
+            }
+            Some(begun) => begun.take(&sentence)?,
+            None => self.leave_out(NO_POSITION),
         }
         Ok(ended)
     }
+
+    /// Counts the sentences of a point that is complete; returns it, where it has a position.
+    fn end(&mut self, begun: &Begun) -> Option<TrajectoryPoint> {
+        let Some(point) = begun.point() else {
+            let line = begun.line;
+            self.tally.left_out(begun.sentences, NO_POSITION, || format!("line {line}"));
+            return None;
+        };
+        self.tally.point(begun.sentences);
+        self.tally.quality(begun.quality.unwrap_or("no stated mode"));
+        self.given_ns = Some(point.time_ns);
+        Some(point)
+    }
+}
+
+/// A sentence as far as it was chosen: of another talker the date alone.
+fn chosen(sentence: Sentence, choice: &NmeaChoice) -> Sentence {
+    if sentence.left_out.is_some() || sentence.is_date_alone {
+        return sentence;
+    }
+    let nobody = Talker::default();
+    let other = choice
+        .talker
+        .as_deref()
+        .map(Talker::of)
+        .is_some_and(|talker| sentence.talker != talker && sentence.talker != nobody);
+    if other {
+        let date = sentence.day_ns.is_some();
+        let sentence = sentence.without(OTHER_TALKERS);
+        return Sentence { is_date_alone: date, ..sentence };
+    }
+    if choice.fixes_alone && sentence.is_estimated { sentence.without(ESTIMATED) } else { sentence }
 }
 
 impl Begun {
+    /// Takes what a sentence says.
+    ///
+    /// # Errors
+    /// If another one of this time contradicts it.
+    fn take(&mut self, sentence: &Sentence) -> Result<(), String> {
+        self.sentences += 1;
+        let apart = |one: [f64; 2], other: [f64; 2]| [0, 1].map(|axis| one[axis] - other[axis]);
+        Said::keep(&mut self.position, sentence.position, "positions", |one, other| {
+            let [north, east] = apart(one.value, other.value);
+            let east = east * libm::cos(one.value[0]);
+            format!("{:.1} m", libm::hypot(north, east) * EARTH_RADIUS_M)
+        })?;
+        Said::keep(&mut self.height_m, sentence.height_m, "heights", |one, other| {
+            format!("{:.2} m", (one.value[0] - other.value[0]).abs())
+        })?;
+        Said::keep(&mut self.velocity_mps, sentence.velocity_mps, "velocities", |one, other| {
+            let [north, east] = apart(one.value, other.value);
+            format!("{:.2} m/s", libm::hypot(north, east))
+        })?;
+        Said::keep(&mut self.attitude_rad, sentence.attitude_rad, "attitudes", |one, other| {
+            let most = (0..3).map(|axis| (one.value[axis] - other.value[axis]).abs());
+            format!("{:.3} deg", most.fold(0.0, f64::max).to_degrees())
+        })?;
+        self.sigma_m = self.sigma_m.or(sentence.sigma_m);
+        self.attitude_sigma_rad = self.attitude_sigma_rad.or(sentence.attitude_sigma_rad);
+        self.quality = self.quality.or(sentence.quality);
+        Ok(())
+    }
+
+    /// Returns whether it has a velocity of the same talker and kind.
+    fn has_velocity_of(&self, sentence: &Sentence) -> bool {
+        let both = self.velocity_mps.zip(sentence.velocity_mps);
+        both.is_some_and(|(there, said)| there.is_of_source(&said))
+    }
+
     /// The point, where it has a position.
     fn point(&self) -> Option<TrajectoryPoint> {
         let [latitude_rad, longitude_rad] = self.position?.value;
+        let sigma = PointSigma {
+            position_m: self.sigma_m,
+            velocity_mps: None,
+            attitude_rad: self.attitude_sigma_rad,
+        };
         Some(TrajectoryPoint {
-            time_ns: self.day_ns + self.of_day_ns,
+            time_ns: self.time_ns,
             latitude_rad,
             longitude_rad,
             height_m: self.height_m.map_or(0.0, |height| height.value[0]),
             velocity_mps: self.velocity_mps.map(|velocity| velocity.value),
-            attitude_rad: self.attitude_rad,
+            attitude_rad: self.attitude_rad.map(|attitude| attitude.value),
+            sigma,
         })
     }
 }
@@ -145,16 +274,27 @@ impl Points for NmeaReader {
     fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
         loop {
             if !self.lines.advance()? {
-                return Ok(self.begun.take().and_then(|begun| begun.point()));
+                if self.waits.take().is_some() {
+                    self.leave_out(NO_POSITION);
+                }
+                let last = self.begun.take();
+                return Ok(last.and_then(|last| self.end(&last)));
             }
             let text = std::mem::take(&mut self.lines.text);
-            let ended = match Sentence::of(&text) {
-                Some(sentence) => self
-                    .take(&sentence)
-                    .map_err(|reason| format!("line {}: {reason}", self.lines.line))?,
-                None => None,
-            };
+            let sentence = Sentence::of(&text);
+            let is_blank = text.trim().is_empty();
             self.lines.text = text;
+            let line = self.lines.line;
+            let ended = match sentence {
+                Ok(sentence) => {
+                    self.take(sentence).map_err(|reason| format!("line {line}: {reason}"))?
+                }
+                Err(_) if is_blank => None,
+                Err(reason) => {
+                    self.leave_out(reason);
+                    None
+                }
+            };
             if ended.is_some() {
                 return Ok(ended);
             }
@@ -169,14 +309,25 @@ impl Points for NmeaReader {
         TimeScale::Utc
     }
 
+    fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    fn tally_mut(&mut self) -> &mut Tally {
+        &mut self.tally
+    }
+
+    fn unit(&self) -> [&'static str; 2] {
+        ["line", "lines"]
+    }
+
     fn heard_ns(&self) -> Option<i64> {
         self.heard_ns
     }
 
-    fn choice(&self) -> Option<&'static str> {
-        self.velocity_leads.then_some(
-            "each VTG goes to the position after it: its velocities fit the change of position there, not before it",
-        )
+    fn choices(&self) -> Vec<&'static str> {
+        let leads = "each VTG goes to the position after it: its velocities fit the change of position there, not before it";
+        self.velocity_leads.then_some(leads).into_iter().collect()
     }
 }
 
@@ -185,9 +336,12 @@ fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
     let mut first_ns = None;
     let (mut sentences, mut unsummed) = (0_u64, 0_u64);
     while lines.advance()? && (sentences > 0 || lines.line <= LINES_TO_LOOK_AT) {
-        let Some(sentence) = Sentence::of(&lines.text) else {
-            unsummed += u64::from(lacks_checksum(&lines.text));
-            continue;
+        let sentence = match Sentence::of(&lines.text) {
+            Ok(sentence) => sentence,
+            Err(reason) => {
+                unsummed += u64::from(reason == UNSUMMED);
+                continue;
+            }
         };
         sentences += 1;
         let first_ns = *first_ns.get_or_insert(sentence.of_day_ns.unwrap_or_default());
@@ -212,12 +366,13 @@ fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
 
 /// Learns whether the velocities without a time belong to the positions after them: those of the positions before and after
 /// each tell.
-fn velocity_leads(lines: &mut NmeaLines) -> Result<bool, String> {
+fn velocity_leads(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<bool, String> {
     let mut points: Vec<(i64, [f64; 2])> = Vec::new();
     // Velocities with the number of points before them.
     let mut velocities: Vec<(usize, [f64; 2])> = Vec::new();
     while lines.advance()? && lines.line <= LINES_TO_LOOK_AT {
-        let Some(sentence) = Sentence::of(&lines.text) else { continue };
+        let Ok(sentence) = Sentence::of(&lines.text) else { continue };
+        let sentence = chosen(sentence, choice);
         match (sentence.of_day_ns, sentence.position, sentence.velocity_mps) {
             (Some(at_ns), Some(position), _)
                 if points.last().is_none_or(|(last_ns, _)| *last_ns != at_ns) =>

@@ -3,15 +3,22 @@
 //! Time of the run begins with the first point that has a reference. Points without one are left out, and so are
 //! points that lack a velocity or an attitude that the others have; what is missing is told at the end.
 
+use super::comparison::{Comparison, Quantity};
+use super::gaps::GapList;
 use super::point::{TimeScale, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
 use super::survey::TrajectorySurvey;
+use super::tally::Tally;
 use super::track::{ReferencePoint, ReferenceTrack, q_nc};
+use octant_account::{Account, AccountEntry};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::FileNameError;
 use octant_scenario::trajectory::{SolutionSpec, TrajectorySpec};
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
+
+/// Units of the account of points.
+const POINT: [&str; 2] = ["point", "points"];
 
 /// Share of the points that may be missing.
 const MISSING_SHARE: f64 = 0.01;
@@ -98,7 +105,26 @@ pub struct SolutionPairs {
     pairs: u64,
     /// True as long as every position, velocity and attitude of the solution is that of the reference.
     identical: [bool; 3],
+    comparison: Comparison,
+    /// Points of the solution that are scored, and left out for a reason.
+    points: Tally,
+    gaps: GapList,
+    scored: Option<Scored>,
+    of_reference: TrajectorySurvey,
     apart: Apart,
+}
+
+const SKIPPED: &str = "points before the time that is scored";
+const INCOMPLETE: &str = "points without the velocity or attitude that the others have";
+const UNREFERRED: &str = "points without a reference at their time";
+
+/// The last point that was scored.
+#[derive(Debug)]
+struct Scored {
+    last_ns: i64,
+    /// Number of points and of the file's units that were left out up to it, and the number for each reason.
+    left_out_then: u64,
+    reasons_then: Vec<(&'static str, u64)>,
 }
 
 /// Words for files of different times.
@@ -150,7 +176,8 @@ impl SolutionPairs {
         };
         let (of_solution, of_reference) = (path(&spec.solution)?, path(&spec.reference)?);
         let survey = TrajectorySurvey::of(&of_solution, &spec.solution.format)?;
-        let reference = TrajectorySurvey::of(&of_reference, &spec.reference.format)?;
+        let reference =
+            TrajectorySurvey::of_role(&of_reference, &spec.reference.format, "reference")?;
         let name = |path: &Path| path.display().to_string();
         near(&of_reference, &reference, site_rad)?;
         let (solution_name, reference_name) = (name(&of_solution), name(&of_reference));
@@ -164,12 +191,12 @@ impl SolutionPairs {
                     scales,
                 });
             }
-            (known_ns, given_ns) => known_ns.unwrap_or(0) + given_ns.unwrap_or(0),
+            (known_ns, given_ns) => known_ns.unwrap_or(0).saturating_add(given_ns.unwrap_or(0)),
         };
         let s = |ns: i64| ns as f64 * 1e-9;
         let spans_s = [
-            s(survey.span_ns.0 + offset_ns),
-            s(survey.span_ns.1 + offset_ns),
+            s(survey.span_ns.0.saturating_add(offset_ns)),
+            s(survey.span_ns.1.saturating_add(offset_ns)),
             s(reference.span_ns.0),
             s(reference.span_ns.1),
         ];
@@ -181,8 +208,9 @@ impl SolutionPairs {
         let reader = TrajectoryReader::open(&of_reference, &spec.reference.format)?;
         Ok(Self {
             solution: TrajectoryReader::open(&of_solution, &spec.solution.format)?,
-            reference: ReferenceTrack::new(reader, spec.gap_ns)?,
+            reference: ReferenceTrack::new(reader, spec.gap_ns, reference.period_ns)?,
             from_ns: survey.span_ns.0.saturating_add(spec.skip_ns),
+            gaps: GapList::new(survey.period_ns),
             survey,
             offset_ns,
             period_ns,
@@ -191,6 +219,10 @@ impl SolutionPairs {
             last_ns: 0,
             pairs: 0,
             identical: [true; 3],
+            comparison: Comparison::default(),
+            points: Tally::default(),
+            scored: None,
+            of_reference: reference,
             apart,
         })
     }
@@ -218,11 +250,25 @@ impl SolutionPairs {
         while let Some(point) = self.solution.next()? {
             let lacks = (self.survey.velocity && point.velocity_mps.is_none())
                 || (self.survey.attitude && point.attitude_rad.is_none());
-            if lacks || point.time_ns < self.from_ns {
-                continue;
-            }
-            let Some(reference) = self.reference.at(point.time_ns + self.offset_ns)? else {
-                continue;
+            let reason = if point.time_ns < self.from_ns {
+                Some(SKIPPED)
+            } else if lacks {
+                Some(INCOMPLETE)
+            } else {
+                None
+            };
+            let at_ns = point.time_ns.saturating_add(self.offset_ns);
+            let reference = match reason {
+                None => self.reference.at(at_ns)?.ok_or(UNREFERRED),
+                Some(reason) => Err(reason),
+            };
+            let reference = match reference {
+                Ok(reference) => reference,
+                Err(reason) => {
+                    let place = self.solution.place();
+                    self.points.left_out(1, reason, || place);
+                    continue;
+                }
             };
             // Longitudes may count from 0 to 360° in one file and from -180° in the other.
             let turns = ((point.longitude_rad - reference.longitude_rad) / TAU).round();
@@ -236,6 +282,9 @@ impl SolutionPairs {
             }
             self.pairs += 1;
             self.last_ns = time_ns;
+            self.points.point(1);
+            self.step(point.time_ns);
+            self.comparison.push(time_ns, &point, &reference);
             let same = [
                 point.latitude_rad == reference.latitude_rad
                     && point.longitude_rad == reference.longitude_rad,
@@ -259,6 +308,57 @@ impl SolutionPairs {
         Ok(None)
     }
 
+    /// Takes the time of a point that is scored, for the gaps.
+    fn step(&mut self, now_ns: i64) {
+        let of_file = self.solution.tally();
+        let left_out = self.points.left_out_count() + of_file.left_out_count();
+        let reasons = || self.points.reasons().chain(of_file.reasons());
+        let Some(Scored { last_ns, left_out_then, reasons_then }) = &mut self.scored else {
+            let reasons_then = reasons().collect();
+            self.scored = Some(Scored { last_ns: now_ns, left_out_then: left_out, reasons_then });
+            return;
+        };
+        self.gaps.step(*last_ns, now_ns, || {
+            // Only what was left out within the gap is its cause.
+            let since = |(kind, count): (&'static str, u64)| {
+                let then = reasons_then.iter().find(|(there, _)| *there == kind);
+                (kind, count - then.map_or(0, |(_, then)| *then))
+            };
+            let causes = reasons().map(since).filter(|(_, count)| *count > 0);
+            let place = [format!("before {}", self.solution.place())];
+            let causes = causes.map(|(kind, count)| format!("{count} {kind}"));
+            place.into_iter().chain(causes).collect::<Vec<_>>().join(", ")
+        });
+        *last_ns = now_ns;
+        if left_out != *left_out_then {
+            *left_out_then = left_out;
+            reasons_then.clear();
+            reasons_then.extend(reasons());
+        }
+    }
+
+    /// What the comparison so far shows besides the errors.
+    #[must_use]
+    pub fn comparison(&self) -> &Comparison {
+        &self.comparison
+    }
+
+    /// Accounts of both files, and of the points of the solution. Known at the end.
+    #[must_use]
+    pub fn accounts(&self) -> Vec<Account> {
+        let points = self.points.account("points of the solution", POINT);
+        let rest = self.survey.points.saturating_sub(points.read());
+        let points =
+            points.left_out(AccountEntry::new(rest, "points after the time that is scored"));
+        let zero_ns = self.first_ns.unwrap_or(self.from_ns);
+        let reference = self.of_reference.account.clone();
+        vec![
+            self.survey.account.clone(),
+            self.reference.gaps().tell(reference, POINT, zero_ns.saturating_add(self.offset_ns)),
+            self.gaps.tell(points, POINT, zero_ns),
+        ]
+    }
+
     /// Describes what makes the comparison so far no evidence; `None`: nothing does.
     #[must_use]
     pub fn doubt(&self) -> Option<String> {
@@ -269,9 +369,25 @@ impl SolutionPairs {
                 "{missing} of {expected} points of the solution are missing, incomplete, or have no reference"
             ));
         }
+        let likeness = |quantity| self.comparison.likeness(quantity);
+        let quantities = Quantity::ALL.map(likeness);
+        if self.pairs > 1 && !quantities.iter().any(|likeness| likeness.solution_varies()) {
+            return Some(format!(
+                "no number of the solution changes over its {} points: constants show nothing of an instrument",
+                self.pairs
+            ));
+        }
+        // Constants that agree, such as velocities at rest, don't show that one was made of the other.
+        let attitude = [Quantity::Roll, Quantity::Pitch, Quantity::Heading];
+        let varies = [
+            likeness(Quantity::Position).varies(),
+            likeness(Quantity::Velocity).varies(),
+            attitude.into_iter().any(|quantity| likeness(quantity).varies()),
+        ];
         let names = ["positions", "velocities", "attitudes"];
-        let identical = names.iter().zip(self.identical).find(|(_, identical)| *identical);
-        identical.filter(|_| self.pairs > 1).map(|(name, _)| {
+        let mut identical = names.iter().zip(self.identical).zip(varies);
+        let found = identical.find(|((_, identical), varies)| *identical && *varies);
+        found.map(|((name, _), _)| {
             format!("all {} {name} of the solution are exactly those of the reference", self.pairs)
         })
     }

@@ -1,5 +1,6 @@
 //! A position with velocity and attitude at a time, and the forms of files that hold such points.
 
+use super::tally::Tally;
 use octant_instruments::GPS_EPOCH_S;
 
 /// Nanoseconds of a second.
@@ -82,6 +83,35 @@ pub fn gps_to_utc_ns(gps_ns: i64) -> Option<i64> {
     })
 }
 
+/// Standard deviations that a file states for one point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PointSigma {
+    /// Position, north and east, m.
+    pub position_m: Option<[f64; 2]>,
+    /// Velocity, north and east, m/s.
+    pub velocity_mps: Option<[f64; 2]>,
+    /// Roll, pitch and heading, rad.
+    pub attitude_rad: Option<[f64; 3]>,
+}
+
+impl PointSigma {
+    /// The larger one of both, axis by axis; that of one where the other has none.
+    #[must_use]
+    pub(crate) fn larger(self, other: Self) -> Self {
+        fn each<const N: usize>(a: Option<[f64; N]>, b: Option<[f64; N]>) -> Option<[f64; N]> {
+            match (a, b) {
+                (Some(a), Some(b)) => Some(std::array::from_fn(|axis| a[axis].max(b[axis]))),
+                (a, b) => a.or(b),
+            }
+        }
+        Self {
+            position_m: each(self.position_m, other.position_m),
+            velocity_mps: each(self.velocity_mps, other.velocity_mps),
+            attitude_rad: each(self.attitude_rad, other.attitude_rad),
+        }
+    }
+}
+
 /// A point of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryPoint {
@@ -97,6 +127,8 @@ pub struct TrajectoryPoint {
     pub velocity_mps: Option<[f64; 2]>,
     /// Roll, pitch and heading of the case, rad.
     pub attitude_rad: Option<[f64; 3]>,
+    /// Standard deviations that the file states.
+    pub sigma: PointSigma,
 }
 
 /// Longest line of text, bytes: a file of another kind may have no line ends and must not fill the memory.
@@ -109,13 +141,18 @@ pub(crate) trait Points: Send {
     /// Place of the last point, as in "line 17".
     fn place(&self) -> String;
     fn scale(&self) -> TimeScale;
+    /// Counts of what became of the units read so far.
+    fn tally(&self) -> &Tally;
+    fn tally_mut(&mut self) -> &mut Tally;
+    /// Name of the units that are counted, singular and plural.
+    fn unit(&self) -> [&'static str; 2];
     /// Latest time that the file told so far, also of what isn't valid and so no point; `None`: that of the last point.
     fn heard_ns(&self) -> Option<i64> {
         None
     }
-    /// Choice that was made in reading the file, in words that follow its name; `None`: none.
-    fn choice(&self) -> Option<&'static str> {
-        None
+    /// Choices that were made in reading the file, in words that follow its name.
+    fn choices(&self) -> Vec<&'static str> {
+        Vec::new()
     }
 }
 

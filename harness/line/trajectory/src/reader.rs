@@ -6,6 +6,8 @@ use super::nmea::NmeaReader;
 use super::point::{Points, TimeScale, TrajectoryPoint};
 use super::rtklib::RtklibReader;
 use super::sbet::SbetReader;
+use super::tally::{OUT_OF_ORDER, Tally};
+use octant_account::{Account, AccountEntry};
 use octant_scenario::trajectory::TrajectoryFormat;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
@@ -51,7 +53,9 @@ impl TrajectoryReader {
             TrajectoryFormat::Csv(columns) => {
                 Box::new(ColumnsReader::new(file, columns).map_err(fail)?)
             }
-            TrajectoryFormat::Nmea => Box::new(NmeaReader::new(file).map_err(fail)?),
+            TrajectoryFormat::Nmea(choice) => {
+                Box::new(NmeaReader::new(file, choice).map_err(fail)?)
+            }
             TrajectoryFormat::Rtklib => Box::new(RtklibReader::new(file).map_err(fail)?),
             TrajectoryFormat::Sbet => Box::new(SbetReader::new(file).map_err(fail)?),
             TrajectoryFormat::Messages(protocol) => {
@@ -67,40 +71,64 @@ impl TrajectoryReader {
         self.points.scale()
     }
 
-    /// Choice that was made in reading the file, in words that follow its name; `None`: none.
-    #[must_use]
-    pub fn choice(&self) -> Option<&'static str> {
-        self.points.choice()
-    }
-
     /// Latest time that the file told so far, if that of a point that isn't valid counts too.
     pub(crate) fn heard_ns(&self) -> Option<i64> {
         self.points.heard_ns()
     }
 
-    /// Returns the next point; `None` at the end.
+    /// Choices that were made in reading the file, in words that follow its name; known after its first points.
+    #[must_use]
+    pub fn choices(&self) -> Vec<&'static str> {
+        self.points.choices()
+    }
+
+    /// Counts of what became of the units read so far.
+    pub(crate) fn tally(&self) -> &Tally {
+        self.points.tally()
+    }
+
+    /// Place of the last point, as in "line 17".
+    pub(crate) fn place(&self) -> String {
+        self.points.place()
+    }
+
+    /// The account of what was read so far; `role` says what the file is: `solution`, `reference`.
+    pub(crate) fn account(&self, role: &str) -> Account {
+        // The whole path is that of one host.
+        let file =
+            self.path.file_name().map_or_else(Default::default, |name| name.to_string_lossy());
+        let account = self.tally().account(&format!("{role} {file}"), self.points.unit());
+        let used = account.used_count();
+        self.points.choices().into_iter().fold(account, |account, choice| {
+            account.note(AccountEntry::new(used, format!("{}: {choice}", self.points.unit()[1])))
+        })
+    }
+
+    /// Returns the next point; `None` at the end. A point whose time isn't after that of the one before is left out and
+    /// counted.
     ///
     /// # Errors
-    /// If the file is damaged, a number can't be what it is said to be, or time doesn't run forward.
+    /// If the file is damaged, or a number can't be what it is said to be.
     #[expect(clippy::should_implement_trait, reason = "an iterator's `next` can't fail")]
     pub fn next(&mut self) -> Result<Option<TrajectoryPoint>, TrajectoryError> {
-        let next = self.points.next().map_err(|reason| TrajectoryError::new(&self.path, reason))?;
-        let Some(point) = next else { return Ok(None) };
-        let fail = |reason: String| {
+        loop {
+            let next = self.points.next();
+            let next = next.map_err(|reason| TrajectoryError::new(&self.path, reason))?;
+            let Some(point) = next else { return Ok(None) };
+            if let Some(reason) = impossible(&point) {
+                let place = self.points.place();
+                return Err(TrajectoryError::new(&self.path, format!("{place}: {reason}")));
+            }
+            let Some(last_ns) = self.last_ns.filter(|last_ns| point.time_ns <= *last_ns) else {
+                self.last_ns = Some(point.time_ns);
+                return Ok(Some(point));
+            };
             let place = self.points.place();
-            Err(TrajectoryError::new(&self.path, format!("{place}: {reason}")))
-        };
-        if let Some(reason) = impossible(&point) {
-            return fail(reason);
+            self.points.tally_mut().discard(OUT_OF_ORDER, || {
+                let before_s = (last_ns - point.time_ns) as f64 * 1e-9;
+                format!("{place}: found a time {before_s:.9} s before the point before it")
+            });
         }
-        if let Some(last_ns) = self.last_ns.filter(|last_ns| point.time_ns <= *last_ns) {
-            return fail(format!(
-                "found a time {:.9} s before the point before it, expected a later one",
-                (last_ns - point.time_ns) as f64 * 1e-9
-            ));
-        }
-        self.last_ns = Some(point.time_ns);
-        Ok(Some(point))
     }
 }
 

@@ -3,8 +3,10 @@
 //! Format: RTKLIB 2.4.2 manual, appendix B.1.
 
 use super::point::{
-    LINE_BYTES_MAX, Points, SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS, gps_to_utc_ns,
+    LINE_BYTES_MAX, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS,
+    gps_to_utc_ns,
 };
+use super::tally::Tally;
 use octant_base::decimal::decimal_ns;
 use octant_instruments::GPS_EPOCH_S;
 use std::fs::File;
@@ -17,6 +19,7 @@ pub(crate) struct RtklibReader {
     line: u64,
     /// What the names of the columns say; `None`: they haven't come.
     columns: Option<RtklibColumns>,
+    tally: Tally,
 }
 
 /// What a line that begins with `%` says of the rows.
@@ -25,12 +28,16 @@ struct RtklibColumns {
     utc: bool,
     /// Position of the velocity north, counted from latitude; east follows.
     velocity: Option<usize>,
+    /// Likewise the quality, and the standard deviations of position and velocity.
+    quality: Option<usize>,
+    sigma: Option<usize>,
+    velocity_sigma: Option<usize>,
 }
 
 impl RtklibReader {
     pub(crate) fn new(file: File) -> Result<Self, String> {
         let file = BufReader::with_capacity(1 << 16, file);
-        Ok(Self { file, text: String::new(), line: 0, columns: None })
+        Ok(Self { file, text: String::new(), line: 0, columns: None, tally: Tally::default() })
     }
 
     fn read_line(&mut self) -> Result<bool, String> {
@@ -46,7 +53,7 @@ impl RtklibReader {
         }
     }
 
-    fn point(&self, columns: RtklibColumns) -> Result<TrajectoryPoint, String> {
+    fn point(&self, columns: RtklibColumns) -> Result<(TrajectoryPoint, &'static str), String> {
         let separated = |c: char| c.is_whitespace() || c == ',';
         let fields: Vec<&str> =
             self.text.split(separated).filter(|field| !field.is_empty()).collect();
@@ -66,18 +73,31 @@ impl RtklibReader {
                  and its second"
             ))
         })?;
-        let velocity_mps = match columns.velocity {
-            Some(north) => Some([number(north)?, number(north + 1)?]),
-            None => None,
+        let two = |north: Option<usize>| match north {
+            Some(north) => Ok::<_, String>(Some([number(north)?, number(north + 1)?])),
+            None => Ok(None),
         };
-        Ok(TrajectoryPoint {
+        let quality = match columns.quality {
+            Some(index) => quality(values.get(index).copied().unwrap_or_default()),
+            None => "no stated quality",
+        };
+        // Zeros: the program had no estimate.
+        let known = |sigma: &[f64; 2]| sigma.iter().any(|sigma| *sigma > 0.0);
+        let sigma = PointSigma {
+            position_m: two(columns.sigma)?.filter(known),
+            velocity_mps: two(columns.velocity_sigma)?.filter(known),
+            attitude_rad: None,
+        };
+        let point = TrajectoryPoint {
             time_ns,
             latitude_rad: number(0)?.to_radians(),
             longitude_rad: number(1)?.to_radians(),
             height_m: number(2)?,
-            velocity_mps,
+            velocity_mps: two(columns.velocity)?,
             attitude_rad: None,
-        })
+            sigma,
+        };
+        Ok((point, quality))
     }
 
     fn error(&self, reason: &str) -> String {
@@ -103,7 +123,10 @@ impl Points for RtklibReader {
                      as a solution of RTKLIB has it",
                 ));
             };
-            return self.point(columns).map(Some);
+            let (point, quality) = self.point(columns)?;
+            self.tally.point(1);
+            self.tally.quality(quality);
+            return Ok(Some(point));
         }
         Ok(None)
     }
@@ -114,6 +137,32 @@ impl Points for RtklibReader {
 
     fn scale(&self) -> TimeScale {
         TimeScale::Utc
+    }
+
+    fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    fn tally_mut(&mut self) -> &mut Tally {
+        &mut self.tally
+    }
+
+    fn unit(&self) -> [&'static str; 2] {
+        ["row", "rows"]
+    }
+}
+
+/// Words for a quality flag.
+fn quality(flag: &str) -> &'static str {
+    match flag {
+        "1" => "quality 1 (fixed ambiguities)",
+        "2" => "quality 2 (float ambiguities)",
+        "3" => "quality 3 (SBAS)",
+        "4" => "quality 4 (DGPS)",
+        "5" => "quality 5 (single)",
+        "6" => "quality 6 (PPP)",
+        "7" => "quality 7 (dead reckoning)",
+        _ => "another quality",
     }
 }
 
@@ -142,8 +191,14 @@ fn columns_of(comment: &str) -> Result<Option<RtklibColumns>, String> {
             ));
         }
     };
-    let velocity = at("vn(m/s)").map(|north| north - latitude);
-    Ok(Some(RtklibColumns { utc, velocity }))
+    let after = |name: &str| at(name).map(|place| place - latitude);
+    Ok(Some(RtklibColumns {
+        utc,
+        velocity: after("vn(m/s)"),
+        quality: after("Q"),
+        sigma: after("sdn(m)"),
+        velocity_sigma: after("sdvn"),
+    }))
 }
 
 /// Time of a row, UTC.

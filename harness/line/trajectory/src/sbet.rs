@@ -4,7 +4,8 @@
 //! don't agree about their axes. Heading counts from the platform's x axis, which the wander angle turns away from
 //! north; they don't agree about its sign either, so an attitude is taken where it is zero.
 
-use super::point::{Points, TimeScale, TrajectoryPoint};
+use super::point::{PointSigma, Points, TimeScale, TrajectoryPoint};
+use super::tally::Tally;
 use std::fs::File;
 use std::io::{BufReader, Read};
 
@@ -22,6 +23,7 @@ pub(crate) struct SbetReader {
     /// Seconds of the weeks that ended in the file.
     weeks_s: f64,
     last_s: f64,
+    tally: Tally,
 }
 
 impl SbetReader {
@@ -31,7 +33,7 @@ impl SbetReader {
             return Err(format!("found {bytes} bytes, expected records of {RECORD} bytes"));
         }
         let file = BufReader::with_capacity(1 << 16, file);
-        Ok(Self { file, records: 0, weeks_s: 0.0, last_s: 0.0 })
+        Ok(Self { file, records: 0, weeks_s: 0.0, last_s: 0.0, tally: Tally::default() })
     }
 }
 
@@ -75,6 +77,7 @@ impl Points for SbetReader {
             self.weeks_s += WEEK_S;
         }
         self.last_s = time_s;
+        self.tally.point(1);
         Ok(Some(TrajectoryPoint {
             time_ns: ((self.weeks_s + time_s) * 1e9).round() as i64,
             latitude_rad,
@@ -82,6 +85,7 @@ impl Points for SbetReader {
             height_m,
             velocity_mps: None,
             attitude_rad: (wander == 0.0).then_some([roll, pitch, heading]),
+            sigma: PointSigma::default(),
         }))
     }
 
@@ -91,5 +95,17 @@ impl Points for SbetReader {
 
     fn scale(&self) -> TimeScale {
         TimeScale::GpsWeek
+    }
+
+    fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    fn tally_mut(&mut self) -> &mut Tally {
+        &mut self.tally
+    }
+
+    fn unit(&self) -> [&'static str; 2] {
+        ["record", "records"]
     }
 }

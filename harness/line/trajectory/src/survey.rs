@@ -2,16 +2,20 @@
 
 use super::point::{TimeScale, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
+use super::tally::OUT_OF_ORDER;
+use octant_account::{Account, AccountEntry};
 use octant_scenario::trajectory::TrajectoryFormat;
 use std::path::Path;
 
 /// Share of the points that have to have a velocity, or an attitude, for the file to have one.
 const SHARE: f64 = 0.99;
+/// Largest share of points that are left out because their time isn't after that of the one before.
+const OUT_OF_ORDER_SHARE: f64 = 0.1;
 /// Part of a period by which the mean of many jittering stamps may be off.
 const JITTER: f64 = 1e-4;
 
 /// What a file holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TrajectorySurvey {
     /// Scale of its times.
     pub scale: TimeScale,
@@ -27,6 +31,8 @@ pub struct TrajectorySurvey {
     pub velocity: bool,
     /// True if points have an attitude.
     pub attitude: bool,
+    /// What became of each unit of the file.
+    pub account: Account,
 }
 
 impl TrajectorySurvey {
@@ -35,6 +41,18 @@ impl TrajectorySurvey {
     /// # Errors
     /// If it can't be read, is damaged, or has fewer than two points.
     pub fn of(path: &Path, format: &TrajectoryFormat) -> Result<Self, TrajectoryError> {
+        Self::of_role(path, format, "solution")
+    }
+
+    /// Reads a file as [`Self::of`] does; `role` names it in its account: `solution`, `reference`.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_role(
+        path: &Path,
+        format: &TrajectoryFormat,
+        role: &str,
+    ) -> Result<Self, TrajectoryError> {
         let mut reader = TrajectoryReader::open(path, format)?;
         let mut span_ns: Option<(i64, i64)> = None;
         let mut first = None;
@@ -64,6 +82,18 @@ impl TrajectorySurvey {
             let first_ns = span_ns.map_or(point.time_ns, |(first_ns, _)| first_ns);
             span_ns = Some((first_ns, point.time_ns));
         }
+        let tally = reader.tally();
+        let late = tally.count(OUT_OF_ORDER);
+        if late as f64 > OUT_OF_ORDER_SHARE * points as f64
+            && let Some(first) = tally.first(OUT_OF_ORDER)
+        {
+            return Err(TrajectoryError::new(
+                path,
+                format!(
+                    "{first}, and {late} are out of order in all, expected times that run forward"
+                ),
+            ));
+        }
         let (Some(span_ns), Some(first), true) = (span_ns, first, points > 1) else {
             let reason = format!("found {points} points with a position, expected two or more");
             return Err(TrajectoryError::new(path, reason));
@@ -73,6 +103,13 @@ impl TrajectorySurvey {
         let span_ns = (span_ns.0, heard_ns.unwrap_or(span_ns.1));
         let period_ns = whole_rate(period_ns, alike_ns as f64 / alike.max(1) as f64);
         let most = |count: u64| count as f64 >= SHARE * points as f64;
+        let mut account = reader.account(role);
+        for (count, name) in [(velocities, "velocity"), (attitudes, "attitude")] {
+            if !most(count) {
+                let kind = format!("points with a {name}, too few for it to count");
+                account = account.note(AccountEntry::new(count, kind));
+            }
+        }
         Ok(Self {
             scale: reader.scale(),
             first,
@@ -81,6 +118,7 @@ impl TrajectorySurvey {
             period_ns: period_ns.max(1),
             velocity: most(velocities),
             attitude: most(attitudes),
+            account,
         })
     }
 }

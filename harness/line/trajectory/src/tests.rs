@@ -6,7 +6,7 @@ use crate::survey::TrajectorySurvey;
 use crate::track::{ReferenceTrack, q_nc};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::recorded::{Delimiter, RecordedColumn, TimeUnit};
-use octant_scenario::trajectory::{TrajectoryColumns, TrajectoryFormat};
+use octant_scenario::trajectory::{NmeaChoice, TrajectoryColumns, TrajectoryFormat};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -23,6 +23,14 @@ fn all(path: &Path, format: &TrajectoryFormat) -> Result<Vec<TrajectoryPoint>, S
         points.push(point);
     }
     Ok(points)
+}
+
+const NMEA: TrajectoryFormat =
+    TrajectoryFormat::Nmea(NmeaChoice { talker: None, fixes_alone: false });
+
+/// Reason why a file is refused once it was read to its end.
+fn refused(path: &Path, format: &TrajectoryFormat) -> String {
+    TrajectorySurvey::of(path, format).unwrap_err().to_string()
 }
 
 fn csv() -> TrajectoryFormat {
@@ -94,7 +102,7 @@ fn text_that_is_no_trajectory_is_refused_with_its_place() {
         ("1,60,361\n", "longitude 361"),
     ] {
         let path = file(folder.path(), "a.csv", format!("{header}{rows}"));
-        let found = all(&path, &csv()).unwrap_err();
+        let found = refused(&path, &csv());
         assert!(found.contains(words) && found.contains("a.csv"), "{found}");
     }
     for (text, words) in [
@@ -130,7 +138,7 @@ fn sentences_of_one_time_are_one_point_and_a_night_has_a_midnight() {
     }
     // A fix that is none, and a date that comes after its sentences.
     text += &sentence("GPGGA,000001.50,0000.0000,N,00000.0000,E,0,0,99,0.0,M,0.0,M,,");
-    let points = all(&file(folder.path(), "a.nmea", text), &TrajectoryFormat::Nmea).unwrap();
+    let points = all(&file(folder.path(), "a.nmea", text), &NMEA).unwrap();
     assert_eq!(points.len(), 2, "{points:?}");
     // 2026-12-31T23:59:59.5 UTC.
     assert_eq!(points[0].time_ns, 1_798_761_599 * SECOND_NS + SECOND_NS / 2);
@@ -155,7 +163,7 @@ fn talkers_that_disagree_are_refused_with_their_names() {
             ))
             + &sentence(&format!("INVTG,090.0,T,,M,{speed_kn},N,,K,A"))
     };
-    let read = |text: String| all(&file(folder.path(), "two.nmea", text), &TrajectoryFormat::Nmea);
+    let read = |text: String| all(&file(folder.path(), "two.nmea", text), &NMEA);
     for (latitude, above_m, speed_kn, words) in [
         (
             "6000.0065",
@@ -187,11 +195,11 @@ fn a_file_without_sentences_or_without_a_date_is_refused() {
         ("time_s,latitude_deg\n1,2\n".to_owned(), "found no sentence of NMEA 0183"),
         (gga.clone(), "1 sentences and no date, expected an RMC or a ZDA"),
     ] {
-        let found = all(&file(folder.path(), "a.nmea", text), &TrajectoryFormat::Nmea).unwrap_err();
+        let found = all(&file(folder.path(), "a.nmea", text), &NMEA).unwrap_err();
         assert!(found.contains(words), "{found}");
     }
     let with_date = gga + &sentence("GPZDA,120001,26,11,2026,00,00");
-    let points = all(&file(folder.path(), "b.nmea", with_date), &TrajectoryFormat::Nmea).unwrap();
+    let points = all(&file(folder.path(), "b.nmea", with_date), &NMEA).unwrap();
     assert_eq!(points[0].time_ns, 1_795_694_400 * SECOND_NS, "2026-11-26T12:00:00Z");
 }
 
@@ -252,7 +260,7 @@ fn track(folder: &Path, points: &[(f64, f64, f64, [f64; 2])], gap_ns: i64) -> Re
         );
     }
     let path = file(folder, "track.csv", text);
-    ReferenceTrack::new(TrajectoryReader::open(&path, &csv()).unwrap(), gap_ns).unwrap()
+    ReferenceTrack::new(TrajectoryReader::open(&path, &csv()).unwrap(), gap_ns, SECOND_NS).unwrap()
 }
 
 #[test]
@@ -307,7 +315,7 @@ proptest! {
     ) {
         let folder = tempfile::tempdir().unwrap();
         let text = lines.iter().map(|line| sentence(line)).collect::<String>();
-        let format = [csv(), TrajectoryFormat::Nmea, TrajectoryFormat::Rtklib, TrajectoryFormat::Sbet];
+        let format = [csv(), NMEA, TrajectoryFormat::Rtklib, TrajectoryFormat::Sbet];
         for content in [bytes, text.into_bytes(), lines.join("\n").into_bytes()] {
             let path = file(folder.path(), "any", content);
             if let Ok(points) = all(&path, &format[form as usize]) {
@@ -398,9 +406,9 @@ fn velocities_go_to_their_own_positions_in_any_order_of_the_cycle() {
     for (name, cycle) in cycles {
         let text: String = (0..40).map(cycle).collect();
         let path = file(folder.path(), "a.nmea", text);
-        let reader = TrajectoryReader::open(&path, &TrajectoryFormat::Nmea).unwrap();
-        assert_eq!(reader.choice().is_some(), matches!(name, "before" | "first"), "{name}");
-        let points = all(&path, &TrajectoryFormat::Nmea).unwrap();
+        let reader = TrajectoryReader::open(&path, &NMEA).unwrap();
+        assert_eq!(!reader.choices().is_empty(), matches!(name, "before" | "first"), "{name}");
+        let points = all(&path, &NMEA).unwrap();
         assert_eq!(points.len(), 40, "{name}");
         for (second, point) in (0..).zip(&points) {
             let found = point.velocity_mps.unwrap_or_else(|| panic!("{name}: {second}"));
@@ -431,7 +439,7 @@ fn midnight_passes_once_with_and_without_a_date() {
             text += &if dates { zda(time, day) } else { String::new() };
             text += &gga(time);
         }
-        let points = all(&file(folder.path(), "m.nmea", text), &TrajectoryFormat::Nmea).unwrap();
+        let points = all(&file(folder.path(), "m.nmea", text), &NMEA).unwrap();
         let steps: Vec<i64> = points.windows(2).map(|p| p[1].time_ns - p[0].time_ns).collect();
         assert_eq!(steps, [SECOND_NS; 3], "{dates}");
     }
@@ -443,7 +451,7 @@ fn sentences_without_checksums_are_refused_with_what_to_write() {
     let text: String = (0..20).map(|s| Circle::zda(s) + &Circle::gga(s)).collect();
     let bare: String =
         text.lines().map(|line| line.split('*').next().unwrap().to_owned() + "\r\n").collect();
-    let found = all(&file(folder.path(), "a.nmea", bare), &TrajectoryFormat::Nmea).unwrap_err();
+    let found = all(&file(folder.path(), "a.nmea", bare), &NMEA).unwrap_err();
     assert!(
         found.contains("found 40 sentences without a checksum, expected each to end in *"),
         "{found}"
@@ -466,9 +474,13 @@ fn a_gps_week_ends_in_an_sbet() {
     assert_eq!(seconds(&[604_799.0, 0.0, 1.0]).unwrap(), [604_799, 604_800, 604_801]);
     // Files that count on, and time that runs back within a week.
     assert_eq!(seconds(&[604_799.0, 604_800.0, 604_801.0]).unwrap(), [604_799, 604_800, 604_801]);
-    assert!(seconds(&[1000.0, 999.0]).unwrap_err().contains("1.000000000 s before"));
+    let refused = |times_s: &[f64]| {
+        let bytes: Vec<u8> = times_s.iter().flat_map(|time_s| record(*time_s)).collect();
+        refused(&file(folder.path(), "b.sbet", bytes), &TrajectoryFormat::Sbet)
+    };
+    assert!(refused(&[1000.0, 999.0]).contains("1.000000000 s before"));
     // Two recordings, one after the other in a file.
-    assert!(seconds(&[500_000.0, 10.0]).unwrap_err().contains("before the point before it"));
+    assert!(refused(&[500_000.0, 10.0]).contains("before the point before it"));
 }
 
 #[test]

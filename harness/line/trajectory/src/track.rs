@@ -4,7 +4,8 @@
 //! has none: with an acceleration a, a line over the time T is wrong by a T²/8 at most. Velocity goes along a line,
 //! attitude along the shortest turn.
 
-use super::point::TrajectoryPoint;
+use super::gaps::GapList;
+use super::point::{PointSigma, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
 use octant_earth::UnitQuaternion;
 use octant_earth::ellipsoid::Ellipsoid;
@@ -24,6 +25,23 @@ pub struct ReferencePoint {
     pub velocity_mps: Option<[f64; 2]>,
     /// Attitude `q_nc` of the case.
     pub q_nc: Option<UnitQuaternion<f64>>,
+    /// Standard deviations that the file states: the larger of those of the points around it.
+    pub sigma: PointSigma,
+}
+
+impl ReferencePoint {
+    /// Roll, pitch and heading, rad.
+    #[must_use]
+    pub fn attitude_rad(&self) -> Option<[f64; 3]> {
+        let q = self.q_nc?;
+        let [w, x, y, z] = [q.w, q.i, q.j, q.k];
+        let sine = (2.0 * (w * y - z * x)).clamp(-1.0, 1.0);
+        Some([
+            libm::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+            libm::asin(sine),
+            libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+        ])
+    }
 }
 
 /// Attitude of the case as a quaternion `q_nc` from roll, pitch and heading.
@@ -39,16 +57,28 @@ pub struct ReferenceTrack {
     gap_ns: i64,
     before: Option<TrajectoryPoint>,
     after: Option<TrajectoryPoint>,
+    /// Gaps of its own period, so far as it was asked for.
+    gaps: GapList,
 }
 
 impl ReferenceTrack {
-    /// A track whose points have a gap between them if they are further apart than `gap_ns`.
+    /// A track whose points have a gap between them if they are further apart than `gap_ns`; normally they are
+    /// `period_ns` apart.
     ///
     /// # Errors
     /// If the file can't be read.
-    pub fn new(mut reader: TrajectoryReader, gap_ns: i64) -> Result<Self, TrajectoryError> {
+    pub fn new(
+        mut reader: TrajectoryReader,
+        gap_ns: i64,
+        period_ns: i64,
+    ) -> Result<Self, TrajectoryError> {
         let after = reader.next()?;
-        Ok(Self { reader, gap_ns, before: None, after })
+        Ok(Self { reader, gap_ns, before: None, after, gaps: GapList::new(period_ns) })
+    }
+
+    /// Gaps of the reference between its points, so far as it was asked for.
+    pub(crate) fn gaps(&self) -> &GapList {
+        &self.gaps
     }
 
     /// Returns the reference at a time of its file, ns; `None` before its beginning, after its end and in a gap.
@@ -59,6 +89,12 @@ impl ReferenceTrack {
         while let Some(after) = self.after.filter(|after| after.time_ns <= time_ns) {
             self.before = Some(after);
             self.after = self.reader.next()?;
+            if let Some(next) = &self.after {
+                let bridged = next.time_ns - after.time_ns <= self.gap_ns;
+                self.gaps.step(after.time_ns, next.time_ns, || {
+                    if bridged { "interpolated" } else { "nothing is scored in it" }.to_owned()
+                });
+            }
         }
         Ok(match (&self.before, &self.after) {
             (Some(before), Some(after)) if after.time_ns - before.time_ns <= self.gap_ns => {
@@ -102,5 +138,6 @@ fn between(a: &TrajectoryPoint, b: &TrajectoryPoint, time_ns: i64) -> ReferenceP
         velocity_mps: velocities.map(|(a, b)| [line(a[0], b[0]), line(a[1], b[1])]),
         // Two attitudes on opposite sides have no shortest turn; the first is as good as any.
         q_nc: turns.map(|(a, b)| a.try_slerp(&b, share, 1e-12).unwrap_or(a)),
+        sigma: a.sigma.larger(b.sigma),
     }
 }

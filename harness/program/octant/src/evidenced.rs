@@ -116,7 +116,7 @@ fn tell_choices(scenario: &Scenario) -> Result<(), Failure> {
     for trajectory in [&spec.solution, &spec.reference] {
         let path = trajectory.file.path(&scenario.folder).map_err(Failure::input)?;
         let reader = TrajectoryReader::open(&path, &trajectory.format).map_err(Failure::input)?;
-        if let Some(choice) = reader.choice() {
+        for choice in reader.choices() {
             note!("octant: {}: {choice}", path.display());
         }
     }

@@ -34,6 +34,9 @@ pub(super) struct SolutionArguments {
     /// How far the offset may be wrong (95 %).
     #[arg(long, value_name = "TIME", requires = "solution")]
     offset_uncertainty: Option<String>,
+    /// Talker of an NMEA 0183 solution whose sentences count, such as IN; by default all, which have to agree.
+    #[arg(long, value_name = "LETTERS", requires = "solution")]
+    talker: Option<String>,
     /// Change a key of the scenario, such as source.solution.latitude=lat.
     #[arg(long, value_name = "KEY=VALUE", requires = "solution")]
     set: Vec<String>,
@@ -65,6 +68,7 @@ pub(super) fn command(
         skip,
         offset,
         offset_uncertainty,
+        talker,
         set: settings,
         out,
         force,
@@ -73,8 +77,19 @@ pub(super) fn command(
     let Some(solution) = solution else {
         return Err(Failure::input("expected a run, or --solution"));
     };
-    let mut set =
-        vec![format!("source.uri={}", from_here(&format!("solution:{}", solution.display()))?)];
+    // A scenario for this command needn't say that a navigation is scored: nothing else can be.
+    let navigation = "procedure.navigation";
+    let mut set = match scenario {
+        Some(file)
+            if !Scenario::absent(file, settings, &[navigation])
+                .map_err(Failure::input)?
+                .is_empty() =>
+        {
+            vec![format!("{navigation}={{}}")]
+        }
+        _ => Vec::new(),
+    };
+    set.push(format!("source.uri={}", from_here(&format!("solution:{}", solution.display()))?));
     if let Some(reference) = reference {
         let path = std::path::absolute(reference).map_err(|error| {
             Failure::input(format!("failed to find {}: {error}", reference.display()))
@@ -86,6 +101,7 @@ pub(super) fn command(
         ("source.solution.skip", skip),
         ("source.trajectory.offset", offset),
         ("source.trajectory.offset_uncertainty", offset_uncertainty),
+        ("source.solution.talker", talker),
     ];
     set.extend(
         keys.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?))),

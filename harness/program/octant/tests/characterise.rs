@@ -234,3 +234,31 @@ fn a_temperature_in_a_text_and_in_an_instruments_bytes_is_told() {
     let (_, said) = ended(octant_in(here, &call), 2);
     assert!(said.contains("warm.csv: line 1: no column \"cold\", found t, wx"), "{said}");
 }
+
+#[test]
+fn a_scenario_needs_only_the_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("rest.toml"), AT_REST).unwrap();
+    octant_in(here, &["run", "rest.toml", "--out", "rest"]);
+    octant_in(here, &["export", "rest", "--to", "csv", "--tables", "samples", "--out", "csv"]);
+    let columns = "schema = 1\n[imu]\nrate = \"50 Hz\"\n[source]\nuri = \"text:csv/samples.csv\"\n[source.text]\n\
+        delimiter = \"comma\"\nheader = true\ntime_column = \"device_time_s\"\n[source.text.gyro]\n\
+        x = \"delta_theta_x_rad\"\ny = \"delta_theta_y_rad\"\nz = \"delta_theta_z_rad\"\nunit = \"rad\"\n\
+        quantity = \"increment\"\n[source.text.accelerometer]\nx = \"delta_velocity_x_mps\"\n\
+        y = \"delta_velocity_y_mps\"\nz = \"delta_velocity_z_mps\"\nunit = \"m/s\"\nquantity = \"increment\"\n";
+    let reference = "[source.reference]\nkind = \"static\"\n";
+    let calibration = "[procedure.calibration]\nduration = \"1 h\"\n";
+    let terms = |text: String| {
+        std::fs::write(here.join("unit.toml"), text).unwrap();
+        let arguments = ["characterise", "unit.toml", "--no-twin", "--json"];
+        let (out, _) = ended(octant_in(here, &arguments), 0);
+        let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+        json["analysis"].clone()
+    };
+    let alone = terms(columns.to_owned());
+    assert!(alone.is_object(), "{alone}");
+    for more in [reference, calibration, "[procedure.navigation]\n"] {
+        assert_eq!(terms(format!("{columns}{more}")), alone, "{more}");
+    }
+}

@@ -138,6 +138,7 @@ impl Bench {
                 velocity_east_error_mps: None,
                 slope_window: None,
                 marks: BTreeMap::new(),
+                gaps: None,
                 series_hours: std::iter::once([0.0; 3]).chain(series).collect(),
             }),
             alignment: None,

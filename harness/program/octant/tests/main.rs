@@ -100,6 +100,7 @@ mod selftest;
 mod shared_table;
 mod smooth;
 mod solution;
+mod solution_doubts;
 mod source_uri;
 #[cfg(feature = "object-storage")]
 mod storage_lies;

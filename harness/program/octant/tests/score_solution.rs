@@ -12,7 +12,7 @@ const RADIUS_M: f64 = 2000.0;
 const SPEED_MPS: f64 = 5.0;
 
 /// Latitude, longitude, deg; velocity north, east, m/s; heading, deg.
-fn circle(t_s: f64) -> [f64; 5] {
+pub(crate) fn circle(t_s: f64) -> [f64; 5] {
     let (s, c) = (SPEED_MPS / RADIUS_M * t_s).sin_cos();
     let earth = Ellipsoid::at(45.0_f64.to_radians(), 0.0);
     let north = (RADIUS_M * s / earth.meridian_radius_m).to_degrees();
@@ -22,10 +22,14 @@ fn circle(t_s: f64) -> [f64; 5] {
     [45.0 + north, 10.0 + east, SPEED_MPS * c, SPEED_MPS * s, heading]
 }
 
-const HEADER: &str = "time_s,latitude_deg,longitude_deg,velocity_north_mps,velocity_east_mps,\
+pub(crate) const HEADER: &str = "time_s,latitude_deg,longitude_deg,velocity_north_mps,velocity_east_mps,\
                       roll_deg,pitch_deg,heading_deg\n";
 
-fn rows(times_s: impl Iterator<Item = f64>, of: impl Fn(f64) -> [f64; 5], zero_s: f64) -> String {
+pub(crate) fn rows(
+    times_s: impl Iterator<Item = f64>,
+    of: impl Fn(f64) -> [f64; 5],
+    zero_s: f64,
+) -> String {
     let row = |t: f64| {
         let [latitude, longitude, north, east, heading] = of(t);
         let time = t + zero_s;
@@ -35,22 +39,22 @@ fn rows(times_s: impl Iterator<Item = f64>, of: impl Fn(f64) -> [f64; 5], zero_s
 }
 
 /// The circle with a drift in latitude of an arcminute an hour, and a heading that is 3′ off.
-fn drifting(t: f64) -> [f64; 5] {
+pub(crate) fn drifting(t: f64) -> [f64; 5] {
     let [latitude, longitude, north, east, heading] = circle(t);
     [latitude + t / 3600.0 / 60.0, longitude, north + 0.01, east, heading + 0.05]
 }
 
-fn seconds(from: u32, to: u32) -> impl Iterator<Item = f64> {
+pub(crate) fn seconds(from: u32, to: u32) -> impl Iterator<Item = f64> {
     (from..=to).map(f64::from)
 }
 
-fn score(folder: &Path, arguments: &[&str]) -> Output {
+pub(crate) fn score(folder: &Path, arguments: &[&str]) -> Output {
     let files =
         ["score", "--solution", "ins.csv", "--reference", "ref.csv", "--out", "out", "--force"];
     program(&[&files[..], arguments].concat()).current_dir(folder).output().unwrap()
 }
 
-fn summary(folder: &Path) -> Value {
+pub(crate) fn summary(folder: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(folder.join("out/summary.json")).unwrap()).unwrap()
 }
 
@@ -116,6 +120,25 @@ fn longitudes_a_turn_apart_are_the_same_and_an_offset_may_be_negative() {
     assert_eq!(ended.status.code(), Some(0), "{ended:?}");
     let error = summary(here)["navigation"]["longitude_error_arcmin"]["max"].as_f64().unwrap();
     assert!(error < 1e-5, "{error}");
+}
+
+#[test]
+fn a_scenario_needs_only_what_is_scored() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("ref.csv"), rows(seconds(0, 3700), circle, 0.0)).unwrap();
+    std::fs::write(here.join("ins.csv"), rows(seconds(60, 3660), drifting, 0.0)).unwrap();
+    let requirement = "schema = 1\n[[requirements]]\nid = \"NAV-1\"\ntext = \"Stays near.\"\n\
+        measure = \"navigation.radial_error_nmi.max\"\nlimit = \"1.5 nmi\"\n";
+    std::fs::write(here.join("trial.toml"), requirement).unwrap();
+    let position = ["--set", "decision.position=1 m"];
+    for more in [&[][..], &["--duration", "1 h"]] {
+        let arguments = [&["--scenario", "trial.toml", "--offset", "0 s"][..], &position, more];
+        let ended = score(here, &arguments.concat());
+        assert_eq!(ended.status.code(), Some(0), "{more:?}: {ended:?}");
+        let verified = program(&["verify", "out"]).current_dir(here).output().unwrap();
+        assert_eq!(verified.status.code(), Some(0), "{verified:?}");
+    }
 }
 
 #[test]

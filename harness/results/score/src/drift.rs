@@ -2,6 +2,7 @@
 //! slope and Schuler oscillation, radial error.
 
 use super::attitude::CaseAngles;
+use super::gaps::{self, GapBridge};
 use super::regression::{SecularSlope, Slopes};
 use super::series::ErrorSeries;
 use super::summary::{ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow};
@@ -76,6 +77,15 @@ struct Errors {
     radial_nmi: f64,
 }
 
+impl Errors {
+    /// All errors, the radial one last.
+    fn with_radial(&self) -> [f64; gaps::ERRORS] {
+        let mut all = [self.radial_nmi; gaps::ERRORS];
+        all[..ERRORS].copy_from_slice(&self.each);
+        all
+    }
+}
+
 /// Largest magnitude and ∫x²dt of one error.
 #[derive(Clone, Copy, Debug, Default)]
 struct Extent {
@@ -117,6 +127,7 @@ pub struct DriftScorer {
     slope: Option<SecularSlope<ERRORS>>,
     marks: BTreeMap<String, Mark>,
     series: ErrorSeries,
+    gaps: Option<Box<GapBridge>>,
     broken: Option<DriftError>,
 }
 
@@ -143,8 +154,15 @@ impl DriftScorer {
             slope: None,
             marks: BTreeMap::new(),
             series: ErrorSeries::new(),
+            gaps: None,
             broken: None,
         }
+    }
+
+    /// Makes a scorer of samples that are this time apart, s, where they have no gap between them.
+    #[must_use]
+    pub fn with_gaps(period_s: f64) -> Self {
+        Self { gaps: Some(Box::new(GapBridge::new(period_s))), ..Self::new() }
     }
 
     /// Takes one sample. [`Self::finish`] reports errors in it; samples after the first invalid one are
@@ -189,6 +207,10 @@ impl DriftScorer {
                 return;
             }
         }
+        if let Some(gaps) = &mut self.gaps {
+            let place = (sample.latitude_rad, sample.height_m);
+            gaps.push(now.t_s, &now.with_radial(), place, sample.velocity_error_mps);
+        }
         self.samples += 1;
         self.attitude &= sample.attitude_error.is_some();
         self.velocity &= sample.velocity_error_mps.is_some();
@@ -211,6 +233,9 @@ impl DriftScorer {
         for hour in MARKS_H {
             let mark_s = f64::from(hour) * 3600.0;
             if before.t_s < mark_s && mark_s <= now.t_s {
+                if let Some(gaps) = &mut self.gaps {
+                    gaps.mark(format!("{hour}h"), before.t_s, (now.t_s, &now.with_radial()));
+                }
                 let part = (mark_s - before.t_s) / dt_s;
                 let at = |a: f64, b: f64| a + part * (b - a);
                 let latitude = at(before.each[LATITUDE], now.each[LATITUDE]);
@@ -258,7 +283,30 @@ impl DriftScorer {
         };
         let attitude = |error: usize| self.attitude.then(|| score(error));
         let velocity = |error: usize| self.velocity.then(|| score(error));
+        let extent = |name, extent: &Extent| Some((name, extent.max, extent.rms(duration_s)));
+        let names = [
+            "latitude_error_arcmin",
+            "longitude_error_arcmin",
+            "heading_error_arcmin",
+            "pitch_error_arcmin",
+            "roll_error_arcmin",
+            "velocity_north_error_mps",
+            "velocity_east_error_mps",
+        ];
+        let gaps = self.gaps.as_ref().and_then(|gaps| {
+            let mut scores = [extent("radial_error_nmi", &self.radial); gaps::ERRORS];
+            for (error, name) in names.into_iter().enumerate() {
+                let scored = match error {
+                    HEADING | PITCH | ROLL => self.attitude,
+                    NORTH | EAST => self.velocity,
+                    _ => true,
+                };
+                scores[error] = extent(name, &self.extents[error]).filter(|_| scored);
+            }
+            gaps.score(scores, duration_s)
+        });
         Ok(NavigationScore {
+            gaps: gaps.map(Box::new),
             duration_h: duration_s / 3600.0,
             height,
             latitude_error_arcmin: score(LATITUDE),

@@ -10,7 +10,7 @@ use super::summary::{BaselineMethod, CalibrationScore, FaultResult, Summary, WIT
 use super::verdict::{RequirementResult, evaluate};
 use super::work::{RunPart, Short, Work};
 use octant_verdict::Verdict;
-use octant_verdict::verdict::LimitCheck;
+use octant_verdict::verdict::{Comparison, LimitCheck};
 use std::convert::Infallible;
 use std::fmt::Display;
 
@@ -232,12 +232,16 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
         .iter()
         .any(|finding| finding.about == FindingSubject::Unit && finding.verdict == Verdict::Fail);
     let broke = bench_broke(summary);
+    let hidden = hidden(summary, &result);
     let reason = match result.verdict {
         Verdict::Pass if broke => "met until the bench failed, and not judged after".to_owned(),
         Verdict::Pass => match short {
             Some(short) => format!("met as far as it was done ({short})"),
             None if misbehaved => "met until an answer that may not be".to_owned(),
-            None => return result,
+            None => match hidden {
+                Some(hidden) => hidden,
+                None => return result,
+            },
         },
         Verdict::Fail if broke && !stays_broken(summary, &result) => {
             "not judged: the bench failed before its end".to_owned()
@@ -247,10 +251,38 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
     RequirementResult { verdict: Verdict::Inconclusive, reason: Some(reason.to_string()), ..result }
 }
 
+/// Reason why an upper limit that holds where a solution was scored may not hold in its gaps.
+fn hidden(summary: &Summary, result: &RequirementResult) -> Option<String> {
+    if !matches!(result.comparison, Comparison::AtMost | Comparison::Below) {
+        return None;
+    }
+    let path = result.measure.trim_matches('|');
+    let navigation = match path.strip_prefix("baseline.") {
+        Some(_) => summary.baseline.as_ref()?.navigation.as_ref()?,
+        None => summary.navigation.as_ref()?,
+    };
+    let gaps = navigation.gaps.as_ref()?;
+    let name = path.trim_start_matches("baseline.").strip_prefix("navigation.")?;
+    let bound = *gaps.bounds.get(name)?;
+    let plain = |value| octant_base::number::plain(value, 6);
+    let [from_s, length_s] = gaps.longest_s.map(plain);
+    let met = format!(
+        "met where it was scored: of {}, the longest of {length_s} s from {from_s} s,",
+        octant_base::number::counted(gaps.count, "gap", "gaps")
+    );
+    match bound {
+        None => Some(format!("{met} one is too long to be bridged")),
+        Some(bound) => {
+            let most = bound + result.uncertainty.unwrap_or(0.0);
+            let holds = result.comparison.holds(most, result.limit);
+            (!holds).then(|| format!("{met} one may hide a value of up to {}", plain(most)))
+        }
+    }
+}
+
 /// True if a broken limit stays broken in any case: that of a maximum, a count, a mark that was
 /// reached, or a result of a completed calibration.
 fn stays_broken(summary: &Summary, result: &RequirementResult) -> bool {
-    use octant_verdict::Comparison;
     let upper = matches!(result.comparison, Comparison::AtMost | Comparison::Below);
     let path = result.measure.trim_matches('|');
     let name = path.rsplit('.').next().unwrap_or(path);

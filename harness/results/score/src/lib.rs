@@ -25,6 +25,7 @@ pub mod drift;
 pub mod equipment;
 mod finding;
 pub mod floor;
+mod gaps;
 pub mod health;
 pub mod judge;
 pub mod junit;

@@ -1,5 +1,6 @@
 //! Results of navigation.
 
+use super::gaps::GapScore;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -49,6 +50,9 @@ pub struct NavigationScore {
     pub slope_window: Option<SlopeWindow>,
     /// Scores at 24 h and 72 h, for runs that got there, with the keys "24h" and "72h".
     pub marks: BTreeMap<String, Mark>,
+    /// Gaps of a solution that was made elsewhere, and what they leave open; left out without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gaps: Option<Box<GapScore>>,
     /// Rows of time (h), latitude error, longitude error (arcmin): at most 2002, including every
     /// extreme.
     pub series_hours: Vec<[f64; 3]>,

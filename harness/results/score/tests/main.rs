@@ -11,6 +11,7 @@ mod compare;
 mod counterfactual;
 mod drift;
 mod equipment;
+mod gaps;
 mod health;
 mod junit;
 mod numerics;

@@ -2,10 +2,11 @@
 
 use super::arguments::{fire, override_set};
 use super::complete::complete;
-use super::error::{FileProblems, Place};
+use super::error::{FileProblems, Place, Problem};
 use super::files::{FilePlaces, put_places};
 use super::model::Scenario;
 use super::{derive, keys, other_format, read};
+use octant_toml_tree::Table;
 use std::path::Path;
 
 impl Scenario {
@@ -61,6 +62,28 @@ impl Scenario {
         Self::parse_fired(text, file, folder, overrides, &[])
     }
 
+    /// Returns those of `keys`, dotted paths, that neither a scenario's file nor `--set` arguments give. A command that
+    /// uses a part of a scenario can add what the rest needs.
+    ///
+    /// # Errors
+    /// If the file can't be read or isn't TOML, or an argument can't be applied.
+    pub fn absent<'a>(
+        path: &Path,
+        overrides: &[String],
+        keys: &[&'a str],
+    ) -> Result<Vec<&'a str>, FileProblems> {
+        let file = path.display().to_string();
+        let text = FileProblems::text_of(path)?;
+        other_format::refuse(&text, &file, "a scenario")?;
+        let with_file = |problems| FileProblems { file: file.clone(), problems };
+        let mut document = octant_toml_tree::parse(&text).map_err(with_file)?;
+        let problems = override_all(&mut document, overrides);
+        if !problems.is_empty() {
+            return Err(with_file(problems));
+        }
+        Ok(keys.iter().copied().filter(|key| document.at(key).is_none()).collect())
+    }
+
     /// Checks a text as [`Scenario::parse`] does, with `--fire` arguments applied as
     /// [`Scenario::load_fired`] does.
     ///
@@ -77,6 +100,11 @@ impl Scenario {
     }
 }
 
+/// Applies `--set` arguments; returns the problems of those that can't be.
+fn override_all(document: &mut Table, overrides: &[String]) -> Vec<Problem> {
+    overrides.iter().filter_map(|argument| override_set(document, argument).err()).collect()
+}
+
 /// Checks a text; `arguments` are those of `--set` and of `--fire`.
 fn parse(
     text: &str,
@@ -88,13 +116,8 @@ fn parse(
     other_format::refuse(text, file, "a scenario")?;
     let with_file = |problems| FileProblems { file: file.to_owned(), problems };
     let mut document = octant_toml_tree::parse(text).map_err(with_file)?;
-    let mut problems = Vec::new();
     let [overrides, fires] = arguments;
-    for argument in overrides {
-        if let Err(problem) = override_set(&mut document, argument) {
-            problems.push(problem);
-        }
-    }
+    let mut problems = override_all(&mut document, overrides);
     for argument in fires {
         if let Err(problem) = fire(&mut document, argument) {
             problems.push(problem);

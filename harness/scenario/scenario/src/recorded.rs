@@ -193,6 +193,8 @@ pub struct TextMapping {
     pub comment: String,
     /// Number of lines at the start of a file that are skipped, whatever they contain.
     pub skip_lines: usize,
+    /// True if the first line after those, in every file, names the columns.
+    pub header: bool,
     /// Gimbal angles.
     pub gimbal: Option<GimbalColumns>,
     /// Temperature, if the file has one.

@@ -19,13 +19,22 @@ pub enum TrajectoryFormat {
     /// Columns of text.
     Csv(Box<TrajectoryColumns>),
     /// Sentences of NMEA 0183 (IEC 61162-1).
-    Nmea,
+    Nmea(NmeaChoice),
     /// A solution of RTKLIB.
     Rtklib,
     /// A smoothed best estimate of trajectory: records of 17 doubles.
     Sbet,
     /// The bytes that a unit sent.
     Messages(NavigationProtocol),
+}
+
+/// Sentences of an NMEA file that count.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct NmeaChoice {
+    /// Letters of the talker; `None`: all, which have to agree.
+    pub talker: Option<String>,
+    /// True if estimated positions (dead reckoning) are left out, as in a reference.
+    pub fixes_alone: bool,
 }
 
 /// Columns of a text file; `None`: the name that Octant's exports have, where the header has it.

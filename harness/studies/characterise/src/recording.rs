@@ -12,6 +12,37 @@ use octant_scenario::{Scenario, SourceSpec};
 use octant_source::{AnySource, Epoch, Source, TextSource};
 use std::path::Path;
 
+/// Loads a scenario, and adds what it lacks to be one of a run: a recording's noise needs neither procedure nor reference.
+fn with_procedure(file: &Path, set: &[String]) -> Result<Scenario, CharacteriseError> {
+    const CALIBRATION: &str = "procedure.calibration";
+    const NAVIGATION: &str = "procedure.navigation";
+    const REFERENCE: &str = "source.reference";
+    const MCAP: &str = "source.mcap";
+    const ALIGNMENT: &str = "procedure.alignment";
+    let keys = [CALIBRATION, NAVIGATION, REFERENCE, MCAP, ALIGNMENT, "source.text", "source.log"];
+    let absent = Scenario::absent(file, set, &keys)?;
+    let lacks = |key: &str| absent.contains(&key);
+    let columns = ["source.text", "source.log", MCAP].iter().any(|key| !lacks(key));
+    let mut more = Vec::new();
+    match (lacks(CALIBRATION), lacks(REFERENCE)) {
+        (true, true) if lacks(NAVIGATION) => more.push(format!("{NAVIGATION}={{}}")),
+        // A reference is for a calibration.
+        (true, false) => {
+            more.push(format!(
+                "{CALIBRATION}={{ duration = \"1 h\", name = \"at rest\", stops = [{{ azimuth = \"0 deg\", roll = \"0 deg\" }}] }}"
+            ));
+            if lacks(ALIGNMENT) {
+                more.push(format!(
+                    "{ALIGNMENT}={{ method = \"inertial\", duration = \"10 min\" }}"
+                ));
+            }
+        }
+        (false, true) if columns => more.push(format!("{REFERENCE}={{ kind = \"static\" }}")),
+        _ => {}
+    }
+    Ok(Scenario::load(file, &[&more[..], set].concat())?)
+}
+
 /// Scenario of a recording that brings none, of a file of `octant export` or of a recording of Octant.
 const PLAIN: &str = "schema = 1\n[procedure.alignment]\nmethod = \"inertial\"\nduration = \"10 min\"\n\
     [procedure.calibration]\nduration = \"1 h\"\nname = \"at rest\"\nstops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }]\n";
@@ -73,8 +104,8 @@ impl RestingRecording {
         };
         let mut of_table = false;
         let scenario = match described {
-            Some(file) => Scenario::load(file, &[&[uri][..], set].concat())?,
-            None if is("toml") => Scenario::load(path, set)?,
+            Some(file) => with_procedure(file, &[&[uri][..], set].concat())?,
+            None if is("toml") => with_procedure(path, set)?,
             None if is("mcap") => {
                 let read = Recording::open(path).map_err(|error| {
                     fail(format!("{error}; the file of another program needs --scenario, with its topic and fields"))

@@ -21,7 +21,7 @@ mod xsens;
 
 use crate::framing::{FrameDecoder, FramingEvent, ReadingCounters};
 pub use novatel::NovatelNavigation;
-pub use reading::NavigationReading;
+pub use reading::{NavigationReading, NavigationSigma};
 pub use sbg::SbgNavigation;
 pub use time::NavigationTime;
 pub use vectornav::VectorNavNavigation;

@@ -4,7 +4,7 @@
 //! header. Roll is right-handed about the forward axis, pitch about the right one, azimuth from north by east. A receiver
 //! may send several of the logs: the first one with a solution counts, and the others are left out.
 
-use super::reading::{NavigationReading, position_rad};
+use super::reading::{NavigationReading, NavigationSigma, position_rad};
 use super::time::gps;
 use crate::bytes::Reader;
 use crate::framing::{Extent, Framing, ReadingDefect};
@@ -18,7 +18,7 @@ const INSPVAX_BYTES: usize = 126;
 /// A line of INSPVAX, with room.
 const MAX_BYTES: usize = 768;
 
-/// Status words of a solution, as numbers and as texts: high variance, good, free, alignment complete.
+/// Status words of a solution, as numbers and as texts.
 const SOLUTIONS: [(u32, &str); 4] = [
     (2, "INS_HIGH_VARIANCE"),
     (3, "INS_SOLUTION_GOOD"),
@@ -62,15 +62,14 @@ type Log = Option<(u16, NavigationReading)>;
 /// Values in the order of both logs: latitude, longitude, height; north, east, up; roll, pitch, azimuth.
 fn reading(
     time: (u32, f64),
-    is_solution: bool,
+    status: Option<&'static str>,
     height_m: f64,
     values: [f64; 9],
+    sigma: NavigationSigma,
 ) -> Result<NavigationReading, ReadingDefect> {
     let time = gps(time.0, time.1)
         .ok_or(ReadingDefect::Unknown { field: "second of the week", found: time.1 as u32 })?;
-    if !is_solution {
-        return Ok(NavigationReading::at(time));
-    }
+    let Some(status) = status else { return Ok(NavigationReading::at(time)) };
     let [latitude, longitude, _, north, east, up, roll, pitch, azimuth] = values;
     Ok(NavigationReading {
         time,
@@ -78,13 +77,26 @@ fn reading(
         height_m: Some(height_m),
         velocity_mps: Some([north, east, -up]),
         attitude_rad: Some([roll, pitch, azimuth].map(f64::to_radians)),
+        sigma,
+        quality: Some(status),
     })
+}
+
+/// Standard deviations in the order of INSPVAX: latitude, longitude, height, m; north, east, up, m/s; roll, pitch,
+/// azimuth, deg.
+fn sigma([a, b, c, d, e, f, g, h, i]: [f64; 9]) -> NavigationSigma {
+    NavigationSigma {
+        position_m: Some([a, b, c]),
+        velocity_mps: Some([d, e, f]),
+        attitude_rad: Some([g, h, i].map(f64::to_radians)),
+    }
 }
 
 fn binary(frame: &[u8]) -> Result<Log, ReadingDefect> {
     let log = novatel::checked(frame)?;
     let fields = &mut Reader::new(log.data);
-    let is_solution = |status: u32| SOLUTIONS.iter().any(|(number, _)| *number == status);
+    let status_of =
+        |status: u32| SOLUTIONS.iter().find(|(number, _)| *number == status).map(|(_, name)| *name);
     let is = |bytes: usize| {
         let found = log.data.len();
         let unknown = ReadingDefect::Unknown { field: "length of the log", found: found as u32 };
@@ -95,8 +107,9 @@ fn binary(frame: &[u8]) -> Result<Log, ReadingDefect> {
             is(INSPVA_BYTES)?;
             let time = (fields.u32_le(), fields.f64_le());
             let values: [f64; 9] = core::array::from_fn(|_| fields.f64_le());
-            let is_solution = is_solution(fields.u32_le());
-            Ok(Some((INSPVA, reading(time, is_solution, values[2], values)?)))
+            let status = status_of(fields.u32_le());
+            let none = NavigationSigma::default();
+            Ok(Some((INSPVA, reading(time, status, values[2], values, none)?)))
         }
         INSPVAX => {
             is(INSPVAX_BYTES)?;
@@ -106,11 +119,11 @@ fn binary(frame: &[u8]) -> Result<Log, ReadingDefect> {
             let undulation_m = f64::from(fields.f32_le());
             let rest: [f64; 6] = core::array::from_fn(|_| fields.f64_le());
             let ([a, b, c], [d, e, f, g, h, i]) = (position, rest);
+            let values = [a, b, c, d, e, f, g, h, i];
+            let sigma = sigma(core::array::from_fn(|_| f64::from(fields.f32_le())));
             let time = (u32::from(log.time.0), f64::from(log.time.1) * 1e-3);
-            Ok(Some((
-                INSPVAX,
-                reading(time, is_solution(status), c + undulation_m, [a, b, c, d, e, f, g, h, i])?,
-            )))
+            let reading = reading(time, status_of(status), c + undulation_m, values, sigma)?;
+            Ok(Some((INSPVAX, reading)))
         }
         _ => Ok(None),
     }
@@ -123,8 +136,8 @@ fn line(frame: &[u8]) -> Result<Log, ReadingDefect> {
     let number = |text: Option<&str>, field| {
         text.and_then(|text| text.parse::<f64>().ok()).ok_or(no_number(field))
     };
-    let is_solution = |status: Option<&str>| {
-        SOLUTIONS.iter().any(|(_, name)| status.is_some_and(|status| status == *name))
+    let status_of = |status: Option<&str>| {
+        SOLUTIONS.iter().find(|(_, name)| status == Some(*name)).map(|(_, name)| *name)
     };
     let mut heads = head.split(',');
     let mut fields = data.split(',');
@@ -136,8 +149,9 @@ fn line(frame: &[u8]) -> Result<Log, ReadingDefect> {
             for value in &mut values {
                 *value = number(fields.next(), "solution")?;
             }
-            let is_solution = is_solution(fields.next());
-            Ok(Some((INSPVA, reading(time, is_solution, values[2], values)?)))
+            let status = status_of(fields.next());
+            let none = NavigationSigma::default();
+            Ok(Some((INSPVA, reading(time, status, values[2], values, none)?)))
         }
         Some("INSPVAXA") => {
             // Port, sequence, idle time and time status come before the time.
@@ -150,11 +164,14 @@ fn line(frame: &[u8]) -> Result<Log, ReadingDefect> {
             for value in &mut all {
                 *value = number(fields.next(), "solution")?;
             }
+            let mut stated = [0.0; 9];
+            for value in &mut stated {
+                *value = number(fields.next(), "standard deviation")?;
+            }
             let [a, b, c, undulation_m, d, e, f, g, h, i] = all;
-            Ok(Some((
-                INSPVAX,
-                reading(time, is_solution(status), c + undulation_m, [a, b, c, d, e, f, g, h, i])?,
-            )))
+            let values = [a, b, c, d, e, f, g, h, i];
+            let (status, height_m) = (status_of(status), c + undulation_m);
+            Ok(Some((INSPVAX, reading(time, status, height_m, values, sigma(stated))?)))
         }
         _ => Ok(None),
     }

@@ -16,11 +16,46 @@ pub struct NavigationReading {
     pub velocity_mps: Option<[f64; 3]>,
     /// Roll, pitch and heading, rad.
     pub attitude_rad: Option<[f64; 3]>,
+    /// Standard deviations that the unit states.
+    pub sigma: NavigationSigma,
+    /// Mode of the unit's filter, in the words of its manual.
+    pub quality: Option<&'static str>,
+}
+
+/// Standard deviations that a unit states of its solution.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NavigationSigma {
+    /// Position: north, east, down, m.
+    pub position_m: Option<[f64; 3]>,
+    /// Velocity: north, east, down, m/s.
+    pub velocity_mps: Option<[f64; 3]>,
+    /// Roll, pitch and heading, rad.
+    pub attitude_rad: Option<[f64; 3]>,
+}
+
+impl NavigationSigma {
+    /// Each of these, or else of others.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            position_m: self.position_m.or(other.position_m),
+            velocity_mps: self.velocity_mps.or(other.velocity_mps),
+            attitude_rad: self.attitude_rad.or(other.attitude_rad),
+        }
+    }
 }
 
 impl NavigationReading {
     pub(super) fn at(time: NavigationTime) -> Self {
-        Self { time, position_rad: None, height_m: None, velocity_mps: None, attitude_rad: None }
+        Self {
+            time,
+            position_rad: None,
+            height_m: None,
+            velocity_mps: None,
+            attitude_rad: None,
+            sigma: NavigationSigma::default(),
+            quality: None,
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! SBG's `EKF_NAV` (8), `EKF_EULER` (6), `EKF_QUAT` (7) and `UTC_TIME` (2) of class 0.
 //!
 //! Stamps are microseconds since power-on. `UTC_TIME` tells which UTC belongs to one of them; the others follow by the same
-//! clock. Without a valid one the time is the unit's own.
+//! clock. Without a valid one the time is the unit's own: one whose leap seconds aren't known yet is off by whole seconds.
 
-use super::reading::{NavigationReading, angles_rad, position_rad};
+use super::reading::{NavigationReading, NavigationSigma, angles_rad, position_rad};
 use super::time::{Calendar, NavigationTime};
 use crate::bytes::Reader;
 use crate::framing::{Extent, Framing, ReadingDefect};
@@ -19,6 +19,17 @@ const UTC_BYTES: usize = 21;
 const EULER_BYTES: usize = 32;
 const QUAT_BYTES: usize = 36;
 const NAV_BYTES: usize = 72;
+
+/// Status of `UTC_TIME`: UTC is known with its leap seconds. Below it, they aren't (1), or nothing is (0).
+const UTC_KNOWN: u16 = 2;
+/// Modes of the filter, the lowest bits of the solution's status.
+const MODES: [&str; 5] = [
+    "mode 0 (not initialised)",
+    "mode 1 (vertical gyro)",
+    "mode 2 (attitude and heading)",
+    "mode 3 (velocity, attitude and heading)",
+    "mode 4 (position, velocity, attitude and heading)",
+];
 
 // Bits of the solution's status.
 const ATTITUDE_VALID: u32 = 1 << 4;
@@ -84,7 +95,7 @@ impl Framing for SbgNavigation {
         let micros = fields.u32_le();
         if message == UTC_TIME {
             let stamp_ns = self.stamp_ns(micros);
-            let is_known = fields.u16_le() >> 6 & 0xF != 0;
+            let is_known = fields.u16_le() >> 6 & 0xF >= UTC_KNOWN;
             let calendar = Calendar {
                 year: fields.u16_le().into(),
                 month: fields.u8_le(),
@@ -106,22 +117,31 @@ impl Framing for SbgNavigation {
         match message {
             EKF_EULER => {
                 let angles = fields.three(|fields| f64::from(fields.f32_le()));
-                fields.skip(12);
+                let sigma = fields.three(|fields| f64::from(fields.f32_le()));
                 reading.attitude_rad = is_attitude(fields.u32_le()).then_some(angles);
+                reading.sigma.attitude_rad = Some(sigma);
             }
             EKF_QUAT => {
                 let quaternion = core::array::from_fn(|_| f64::from(fields.f32_le()));
-                fields.skip(12);
+                reading.sigma.attitude_rad =
+                    Some(fields.three(|fields| f64::from(fields.f32_le())));
                 let status = fields.u32_le();
                 reading.attitude_rad = angles_rad(quaternion).filter(|_| is_attitude(status));
             }
             _ => {
                 let velocity = fields.three(|fields| f64::from(fields.f32_le()));
-                fields.skip(12);
+                let velocity_sigma = fields.three(|fields| f64::from(fields.f32_le()));
                 let [latitude, longitude, altitude_m] = fields.three(Reader::f64_le);
                 let undulation_m = f64::from(fields.f32_le());
-                fields.skip(12);
+                // Latitude, longitude and height: in metres, as the velocity is in metres a second.
+                let position_sigma = fields.three(|fields| f64::from(fields.f32_le()));
                 let status = fields.u32_le();
+                reading.quality = MODES.get((status & 0xF) as usize).copied();
+                reading.sigma = NavigationSigma {
+                    position_m: Some(position_sigma),
+                    velocity_mps: Some(velocity_sigma),
+                    attitude_rad: None,
+                };
                 if status & POSITION_VALID != 0 {
                     reading.position_rad = position_rad([latitude, longitude]);
                     reading.height_m = Some(altitude_m + undulation_m);

@@ -4,7 +4,7 @@
 //! unit no longer moves its position. Without that field everything counts but a position of zeros. The time is `TimeGps`, else
 //! `TimeUtc`, else `TimeStartup`.
 
-use super::reading::{NavigationReading, position_rad};
+use super::reading::{NavigationReading, NavigationSigma, position_rad};
 use super::time::{Calendar, NavigationTime};
 use crate::bytes::Reader;
 use crate::framing::{Extent, Framing, ReadingDefect};
@@ -25,6 +25,10 @@ const ATTITUDE_YPR: u16 = 1 << 1;
 const INS_STATUS: u16 = 1 << 0;
 const INS_POS_LLA: u16 = 1 << 1;
 const INS_VEL_NED: u16 = 1 << 4;
+// Uncertainties, one standard deviation: one number for all axes of position and velocity, deg of the angles.
+const INS_POS_U: u16 = 1 << 9;
+const INS_VEL_U: u16 = 1 << 10;
+const ATTITUDE_YPR_U: u16 = 1 << 8;
 
 /// GPS time of 1999: earlier the unit has no fix yet, ns.
 const OLDEST_GPS_NS: u64 = 600_000_000_000_000_000;
@@ -33,6 +37,8 @@ const GPS_TIME_VALID: u8 = 0b011;
 const UTC_TIME_VALID: u8 = 0b111;
 const TRACKING: u16 = 2;
 const WITHOUT_GNSS: u16 = 3;
+const MODES: [&str; 4] =
+    ["mode 0 (not tracking)", "mode 1 (aligning)", "mode 2 (tracking)", "mode 3 (without GNSS)"];
 
 /// Navigation messages of VectorNav.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,6 +54,7 @@ struct Found {
     position: Option<[f64; 3]>,
     velocity_mps: Option<[f64; 3]>,
     yaw_pitch_roll: Option<[f64; 3]>,
+    sigma: NavigationSigma,
 }
 
 impl Framing for VectorNavNavigation {
@@ -81,6 +88,12 @@ impl Framing for VectorNavNavigation {
             }
             (COMMON, COMMON_YPR) | (ATTITUDE, ATTITUDE_YPR) => {
                 found.yaw_pitch_roll.get_or_insert(floats(&mut field));
+            }
+            (INS, INS_POS_U) => found.sigma.position_m = Some([f64::from(field.f32_le()); 3]),
+            (INS, INS_VEL_U) => found.sigma.velocity_mps = Some([f64::from(field.f32_le()); 3]),
+            (ATTITUDE, ATTITUDE_YPR_U) => {
+                let [yaw, pitch, roll] = floats(&mut field);
+                found.sigma.attitude_rad = Some([roll, pitch, yaw].map(f64::to_radians));
             }
             _ => {}
         })?;
@@ -126,6 +139,8 @@ impl Found {
             velocity_mps: self.velocity_mps.filter(|_| moves),
             attitude_rad: (points && self.yaw_pitch_roll.is_some())
                 .then(|| [roll, pitch, yaw].map(f64::to_radians)),
+            sigma: self.sigma,
+            quality: self.mode.and_then(|mode| MODES.get(usize::from(mode))).copied(),
         })
     }
 }

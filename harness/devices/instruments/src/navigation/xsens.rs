@@ -2,7 +2,7 @@
 //!
 //! Velocity and attitude are in the axes that the identifier tells: east, north, up; north, east, down; north, west, up. The body is
 //! forward, left, up in the first and last, and forward, right, down in the second. The time is `UtcTime` where its flags say
-//! that it is valid, else `SampleTimeFine`. A frame whose status word says that the filter is not valid has its time alone.
+//! that it is valid, else `SampleTimeFine`. A frame whose status byte or word says that the filter is not valid has its time alone.
 
 use super::reading::{NavigationReading, angles_rad, position_rad};
 use super::time::{Calendar, NavigationTime};
@@ -22,8 +22,10 @@ const LAT_LON: u16 = 0x5040;
 const VELOCITY_XYZ: u16 = 0xD010;
 /// Bits of `UtcTime`: date, time of day, and leap seconds are known.
 const UTC_VALID: u8 = 0b111;
-/// Bit of the status word: the filter's solution is valid.
+const STATUS_BYTE: u16 = 0xE010;
+/// Bits of status byte and word: the filter's solution is valid, GNSS has a fix.
 const FILTER_VALID: u32 = 1 << 1;
+const GNSS_FIX: u32 = 1 << 2;
 
 /// Navigation messages of Xsens.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +96,8 @@ struct Found {
     height_m: Option<f64>,
     velocity_mps: Option<[f64; 3]>,
     attitude_rad: Option<[f64; 3]>,
-    is_valid: Option<bool>,
+    /// Bits that status byte and word have both, or the one that is there.
+    status: Option<u32>,
 }
 
 impl Found {
@@ -150,7 +153,12 @@ impl Found {
                 }
                 STATUS_WORD => {
                     is(4)?;
-                    found.is_valid = Some(fields.u32_be() & FILTER_VALID != 0);
+                    found.status = Some(found.status.unwrap_or(u32::MAX) & fields.u32_be());
+                }
+                STATUS_BYTE => {
+                    is(1)?;
+                    let byte = u32::from(fields.u8_be());
+                    found.status = Some(found.status.unwrap_or(u32::MAX) & byte);
                 }
                 _ => {}
             }
@@ -177,7 +185,8 @@ impl Framing for XsensNavigation {
         let fine_ns =
             found.fine.map(|fine| self.fine.continued(fine.into()).saturating_mul(FINE_NS));
         let time = found.utc_ns.map(NavigationTime::Utc).or(fine_ns.map(NavigationTime::Own));
-        Ok(time.map(|time| match found.is_valid {
+        let is = |bit: u32| found.status.map(|status| status & bit != 0);
+        Ok(time.map(|time| match is(FILTER_VALID) {
             Some(false) => NavigationReading::at(time),
             _ => NavigationReading {
                 time,
@@ -185,6 +194,8 @@ impl Framing for XsensNavigation {
                 height_m: found.height_m,
                 velocity_mps: found.velocity_mps,
                 attitude_rad: found.attitude_rad,
+                quality: is(GNSS_FIX).map(|fix| if fix { "a GNSS fix" } else { "no GNSS fix" }),
+                ..NavigationReading::at(time)
             },
         }))
     }

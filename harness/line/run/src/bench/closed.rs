@@ -62,6 +62,7 @@ impl<S: Source, E: Endpoint> Bench<S, E, Records<'_>> {
             Some(error) => driven.and(Err(error.into())),
         };
         let (cut_short, inputs) = (source.cut_short(), source.accounts());
+        let compared = source.compared().cloned().map(Box::new);
         if let Some(detail) = &instrument {
             recorder.event(Event::Bench(detail.clone()));
         }
@@ -117,7 +118,7 @@ impl<S: Source, E: Endpoint> Bench<S, E, Records<'_>> {
             }
             _ => (ended, broken),
         };
-        let bench = BenchEnd { broken, cut_short, inputs, kept, link, instrument, power };
+        let bench = BenchEnd { broken, cut_short, inputs, compared, kept, link, instrument, power };
         let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
         Ok(Closed {
             ended,

@@ -10,6 +10,7 @@ use octant_recorder::event::{BenchRecord, LinkRecord, PowerRecord};
 use octant_sample::{Mode, Output};
 use octant_score::summary::PacingRecord;
 use octant_source::SourceError;
+use octant_trajectory::Comparison;
 
 /// How the loop ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,6 +122,8 @@ pub struct BenchEnd {
     pub cut_short: Option<String>,
     /// Accounts of what the source read from outside.
     pub inputs: Vec<Account>,
+    /// What the comparison of a solution with its reference shows besides the errors.
+    pub compared: Option<Box<Comparison>>,
     /// Time keeping of a run by the clock.
     pub kept: Option<TimeKeeping>,
     /// Device and traffic of a run over a wire; as in the recording.

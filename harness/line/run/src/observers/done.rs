@@ -60,6 +60,11 @@ impl PlannedWork {
         self.tells
     }
 
+    /// Time between two samples, s.
+    pub(crate) fn period_s(&self) -> f64 {
+        self.period_ns as f64 * 1e-9
+    }
+
     /// Creates a plan of durations alone, without stops or references.
     #[must_use]
     pub fn lasting(scenario: &Scenario) -> Self {

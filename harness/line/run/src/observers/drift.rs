@@ -15,6 +15,8 @@ pub struct NavigationDrift {
     /// Device time of the last sample.
     scored_ns: Option<u64>,
     scorer: DriftScorer,
+    /// Time between two samples of a solution that was made elsewhere, s.
+    period_s: Option<f64>,
     samples: u64,
     /// Errors of attitude and velocity over the navigation.
     pub solution: SolutionSeries,
@@ -27,7 +29,14 @@ impl NavigationDrift {
     #[cold]
     pub(super) fn begin(&mut self, now_ns: u64) {
         let moved = self.moved;
-        *self = Self { start_ns: Some(now_ns), moved, ..Self::default() };
+        let of_gaps = Self::of_gaps(self.period_s);
+        *self = Self { start_ns: Some(now_ns), moved, ..of_gaps };
+    }
+
+    /// Creates one whose gaps are told, of samples that are this time apart, s; `None`: gaps aren't told.
+    pub(super) fn of_gaps(period_s: Option<f64>) -> Self {
+        let scorer = period_s.map_or_else(DriftScorer::new, DriftScorer::with_gaps);
+        Self { period_s, scorer, ..Self::default() }
     }
 
     /// Takes the truth at an answer with the errors of its attitude and velocity; returns the sample, if it counts.

@@ -113,6 +113,8 @@ impl Observers {
         let calibration_s = plan.work.calibration_s.unwrap_or(0.0);
         let follows = plan.tells().is_none_or(|tells| tells.follows);
         let tells = plan.tells().unwrap_or(Tells::ALL);
+        // A solution that was made elsewhere may lack points.
+        let gaps_s = (!follows).then(|| plan.period_s());
         let now = Now {
             source: None,
             last_ns: 0,
@@ -127,7 +129,7 @@ impl Observers {
             answers: Answers::new(plan.tells()),
             moments: Moments::new(tells, plan.standing_rad(), plan.prior().copied()),
             done: Done::towards(plan),
-            drift: NavigationDrift::default(),
+            drift: NavigationDrift::of_gaps(gaps_s),
             convergence: Convergence::over(calibration_s),
             measurements: Measurements::new(),
             gimbals: GimbalSeries::default(),

@@ -1,5 +1,6 @@
 //! Assembles summary, report and verdict from the methods of a run.
 
+use super::compared::{band, stated};
 use super::difference::difference;
 use super::findings::findings;
 use super::method::MethodRun;
@@ -150,6 +151,11 @@ pub fn assemble_with(
     let calibration_errors = filtered(&primary);
     let baseline_calibration_errors =
         baseline.as_ref().map_or_else(SolutionSeries::default, filtered);
+    let compared = primary.bench.compared.take();
+    let mut decision = scenario.decision.decided(&against);
+    if let Some(stated) = compared.as_ref().and_then(|compared| stated(compared)) {
+        decision.text += &format!(", {stated}");
+    }
     let mut summary = Summary {
         schema: WITH_FINDINGS,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -160,7 +166,7 @@ pub fn assemble_with(
         reasons: Vec::new(),
         requirements: Vec::new(),
         findings: Vec::new(),
-        decision: Some(scenario.decision.decided(&against)),
+        decision: Some(decision),
         planned: Some(planned),
         done: Some(done),
         inputs: std::mem::take(&mut primary.bench.inputs),
@@ -195,7 +201,13 @@ pub fn assemble_with(
         if scenario.decision.rule() == DecisionRule::SimpleAcceptance {
             return Ok(0.0);
         }
-        scenario.decision.uncertainty(measure, &against)
+        let stated = scenario.decision.uncertainty(measure, &against);
+        let of_file = compared.as_ref().and_then(|compared| band(compared, measure, scenario));
+        match (stated, of_file) {
+            (Ok(stated), of_file) => Ok(of_file.map_or(stated, |of_file| stated.max(of_file))),
+            (Err(_), Some(of_file)) => Ok(of_file),
+            (unknown, None) => unknown,
+        }
     })?;
     summary.schema = summary.needed_schema()?;
     let report = ReportData {

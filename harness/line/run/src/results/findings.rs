@@ -2,6 +2,7 @@
 //! missing evidence.
 
 use super::clock_doubt::clock_doubt;
+use super::compared::too_like;
 use super::method::{MethodRun, planned_of};
 use crate::bench::ended::Ended;
 use octant_account::Account;
@@ -32,6 +33,8 @@ pub fn findings(
     ];
     for (run, method, place) in methods.into_iter().flatten() {
         findings.extend(of_bench(&scenario.realtime, run, &place));
+        let too_like = too_like(scenario, run).into_iter();
+        findings.extend(too_like.map(|reason| Finding::of_bench(Verdict::Inconclusive, reason)));
         findings.extend(of_unit(scenario, run, method, &place));
         findings.extend(of_run(&scenario.realtime, run, &place));
         if let Some(twin) = &run.twin

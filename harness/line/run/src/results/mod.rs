@@ -3,6 +3,7 @@
 mod aligned;
 pub mod assemble;
 mod clock_doubt;
+mod compared;
 pub mod difference;
 pub mod findings;
 pub(crate) mod method;

@@ -13,18 +13,25 @@ pub(super) struct Said<const N: usize> {
     /// Change of the values by one in their last digits.
     resolution: [f64; N],
     talker: Talker,
+    kind: Talker,
 }
 
 impl<const N: usize> Said<N> {
-    /// Index of a value in which another talker differs by more than the last digits of both.
+    /// Index of a value in which another talker, or another sentence of this kind, differs by more than the last digits
+    /// of both.
     fn differs(&self, other: &Self) -> Option<usize> {
-        if self.talker == other.talker {
+        if self.talker == other.talker && self.kind != other.kind {
             return None;
         }
         (0..N).find(|&index| {
             let most = self.resolution[index] + other.resolution[index];
             (self.value[index] - other.value[index]).abs() > most
         })
+    }
+
+    /// Returns whether another one is of the same talker and kind.
+    pub(super) fn is_of_source(&self, other: &Self) -> bool {
+        self.talker == other.talker && self.kind == other.kind
     }
 
     /// Keeps the finest that was said of a point, of equal ones the first.
@@ -50,12 +57,20 @@ impl<const N: usize> Said<N> {
                 }
                 Ok(())
             }
+            Some(_) if first.talker == said.talker => Err(format!(
+                "two {}{} of the same time disagree: their {quantity} are {} apart, expected one instrument, and times \
+                 with the digits of its rate",
+                said.talker,
+                said.kind,
+                amount(first, &said)
+            )),
             Some(_) => Err(format!(
                 "talkers {} and {} disagree: their {quantity} at the same time are {} apart, expected one instrument: \
-                 write the sentences of each talker into a file of its own, and name the one to use",
+                 say which one with the key talker, such as talker = \"{}\"",
                 first.talker,
                 said.talker,
-                amount(first, &said)
+                amount(first, &said),
+                said.talker,
             )),
         }
     }
@@ -63,10 +78,10 @@ impl<const N: usize> Said<N> {
 
 /// Talker of a sentence: the letters before its kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Talker([u8; 4]);
+pub(super) struct Talker([u8; 5]);
 
 impl Talker {
-    fn of(letters: &str) -> Self {
+    pub(super) fn of(letters: &str) -> Self {
         let mut talker = Self::default();
         for (to, from) in talker.0.iter_mut().zip(letters.bytes()) {
             *to = if from.is_ascii_graphic() { from } else { b'?' };
@@ -84,19 +99,19 @@ impl std::fmt::Display for Talker {
     }
 }
 
-/// Returns whether a line has a sentence that would count if it had a checksum.
-pub(super) fn lacks_checksum(line: &str) -> bool {
-    let Some((_, body)) = line.trim_end().rsplit_once('$') else { return false };
-    if body.contains('*') {
-        return false;
-    }
-    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
-    Sentence::of(&format!("${body}*{sum:02X}")).is_some()
-}
+// Reasons why a line belongs to no point.
+const NO_SENTENCE: &str = "lines without a sentence";
+const DAMAGED: &str = "sentences with a wrong checksum";
+pub(super) const UNSUMMED: &str = "sentences without a checksum";
+const OTHER_KINDS: &str = "sentences of other kinds";
+const UNREADABLE: &str = "sentences that can't be read";
+const NO_FIX: &str = "sentences without a valid fix";
+const NO_MEASUREMENT: &str = "sentences of a simulator or of manual input";
 
 /// What a sentence says.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sentence {
+    pub(super) talker: Talker,
     pub(super) of_day_ns: Option<i64>,
     pub(super) day_ns: Option<i64>,
     /// True for a ZDA.
@@ -104,34 +119,115 @@ pub(super) struct Sentence {
     pub(super) position: Option<Said<2>>,
     pub(super) height_m: Option<Said<1>>,
     pub(super) velocity_mps: Option<Said<2>>,
-    pub(super) attitude_rad: Option<[f64; 3]>,
+    pub(super) attitude_rad: Option<Said<3>>,
+    /// Standard deviations of latitude and longitude, m, and of the attitude, rad.
+    pub(super) sigma_m: Option<[f64; 2]>,
+    pub(super) attitude_sigma_rad: Option<[f64; 3]>,
+    /// Quality of a position, in the words of the standard.
+    pub(super) quality: Option<&'static str>,
+    /// True for a position of dead reckoning.
+    pub(super) is_estimated: bool,
+    /// Reason why nothing of it but its time counts.
+    pub(super) left_out: Option<&'static str>,
+}
+
+/// What the mode letters of a sentence say: the best of several systems.
+enum Mode {
+    Fix(&'static str),
+    Estimated(&'static str),
+    LeftOut(&'static str),
+}
+
+impl Mode {
+    /// Mode of the field with the quality of a GGA.
+    fn of_quality(field: &str) -> Self {
+        match field {
+            "1" => Self::Fix("quality 1 (GNSS)"),
+            "2" => Self::Fix("quality 2 (differential)"),
+            "3" => Self::Fix("quality 3 (PPS)"),
+            "4" => Self::Fix("quality 4 (RTK, fixed)"),
+            "5" => Self::Fix("quality 5 (RTK, float)"),
+            "6" => Self::Estimated("quality 6 (estimated, dead reckoning)"),
+            "7" | "8" => Self::LeftOut(NO_MEASUREMENT),
+            // Some receivers have numbers of their own above these.
+            _ if field.parse::<u8>().is_ok_and(|number| number > 8) => Self::Fix("another quality"),
+            _ => Self::LeftOut(NO_FIX),
+        }
+    }
+
+    /// Mode of letters, one for each system; a field that isn't there says nothing.
+    fn of_letters(field: &str) -> Self {
+        let has = |letters: &[u8]| field.bytes().any(|letter| letters.contains(&letter));
+        if field.is_empty() {
+            Self::Fix("no stated mode")
+        } else if has(b"RF") {
+            Self::Fix("mode R or F (RTK)")
+        } else if has(b"DP") {
+            Self::Fix("mode D or P (differential, precise)")
+        } else if has(b"A") {
+            Self::Fix("mode A (autonomous)")
+        } else if has(b"E") {
+            Self::Estimated("mode E (estimated, dead reckoning)")
+        } else if has(b"MS") {
+            Self::LeftOut(NO_MEASUREMENT)
+        } else {
+            Self::LeftOut(NO_FIX)
+        }
+    }
 }
 
 impl Sentence {
-    /// Reads a line; `None` if it has no sentence that counts here, or a damaged one.
-    pub(super) fn of(line: &str) -> Option<Self> {
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// The reason why it has no sentence that counts here.
+    pub(super) fn of(line: &str) -> Result<Self, &'static str> {
         // Loggers write stamps of their own before a sentence.
-        let body = &line[line.rfind('$')? + 1..];
-        let (body, checksum) = body.trim_end().rsplit_once('*')?;
-        let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
-        if u8::from_str_radix(checksum, 16).ok()? != sum {
-            return None;
-        }
-        let (kind, fields) = body.split_once(',')?;
-        let fields: Vec<&str> = fields.split(',').collect();
-        let (talker, kind) = match kind {
-            "PASHR" => ("P", kind),
-            _ => kind.split_at_checked(kind.len().checked_sub(3)?)?,
+        let body = &line[line.rfind('$').ok_or(NO_SENTENCE)? + 1..];
+        let Some((body, checksum)) = body.trim_end().rsplit_once('*') else {
+            // Only what would count is worth a checksum.
+            return Err(match Self::of_body(body.trim_end()) {
+                Err(reason) if reason != UNREADABLE => reason,
+                _ => UNSUMMED,
+            });
         };
-        let talker = Talker::of(talker);
+        let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+        if u8::from_str_radix(checksum, 16) != Ok(sum) {
+            return Err(DAMAGED);
+        }
+        Self::of_body(body)
+    }
+
+    fn of_body(body: &str) -> Result<Self, &'static str> {
+        let (name, fields) = body.split_once(',').ok_or(OTHER_KINDS)?;
+        let fields: Vec<&str> = fields.split(',').collect();
+        let (talker, kind) = match name {
+            "PASHR" => ("", name),
+            _ => name
+                .len()
+                .checked_sub(3)
+                .and_then(|at| name.split_at_checked(at))
+                .ok_or(OTHER_KINDS)?,
+        };
+        let kinds = ["GGA", "GNS", "GLL", "RMC", "ZDA", "VTG", "GST", "PASHR"];
+        if !kinds.contains(&kind) {
+            return Err(OTHER_KINDS);
+        }
+        let sentence = Self::of_fields(Talker::of(talker), kind, &fields).ok_or(UNREADABLE)?;
+        // A sentence with a time that can't be read must not go to the point before it.
+        let needs_time = kind != "VTG";
+        if needs_time && sentence.of_day_ns.is_none() { Err(UNREADABLE) } else { Ok(sentence) }
+    }
+
+    fn of_fields(talker: Talker, kind: &str, fields: &[&str]) -> Option<Self> {
         let field = |index: usize| fields.get(index).copied().unwrap_or_default();
         let number = |index: usize| field(index).parse::<f64>().ok().filter(|x| x.is_finite());
+        let named = Talker::of(kind);
         let position = |at: usize| {
             let value = [angle(field(at), field(at + 1))?, angle(field(at + 2), field(at + 3))?];
             let resolution = [at, at + 2].map(|at| (last_digit(field(at)) / 60.0).to_radians());
-            Some(Said { value, resolution, talker })
+            Some(Said { value, resolution, talker, kind: named })
         };
-        let of_day_ns = |index: usize| of_day(field(index));
         let velocity = |speed: usize, course: usize| {
             let speed_mps = number(speed)? * KNOT_MPS;
             // At rest there is no course.
@@ -139,57 +235,84 @@ impl Sentence {
             let (sine, cosine) = libm::sincos(course_deg.to_radians());
             let turned_mps = speed_mps.abs() * last_digit(field(course)).to_radians();
             let resolution = [last_digit(field(speed)) * KNOT_MPS + turned_mps; 2];
-            Some(Said { value: [speed_mps * cosine, speed_mps * sine], resolution, talker })
+            let value = [speed_mps * cosine, speed_mps * sine];
+            Some(Said { value, resolution, talker, kind: named })
         };
-        let none = Self::default();
-        let sentence = match kind {
+        let at = |index: usize| Self { talker, of_day_ns: of_day(field(index)), ..Self::default() };
+        Some(match kind {
             "GGA" | "GNS" => {
-                let is_fix = match kind {
-                    "GGA" => number(5).is_some_and(|quality| quality > 0.0),
-                    _ => field(5).bytes().any(|mode| mode != b'N'),
+                let mode = match kind {
+                    "GGA" => Mode::of_quality(field(5)),
+                    // Without a mode there is no fix.
+                    _ if field(5).is_empty() => Mode::LeftOut(NO_FIX),
+                    _ => Mode::of_letters(field(5)),
                 };
                 let separation = if kind == "GGA" { 10 } else { 9 };
                 let height_m = number(8).zip(number(separation)).map(|(above_geoid, geoid)| Said {
                     value: [above_geoid + geoid],
                     resolution: [last_digit(field(8)) + last_digit(field(separation))],
                     talker,
+                    kind: named,
                 });
-                let position = position(1).filter(|_| is_fix);
-                Self { of_day_ns: of_day_ns(0), position, height_m, ..none }
+                Self { position: position(1), height_m, ..at(0) }.with(mode)
             }
             "GLL" => {
-                let position = position(0).filter(|_| field(5) == "A");
-                Self { of_day_ns: of_day_ns(4), position, ..none }
+                let mode = match field(5) {
+                    "A" => Mode::of_letters(field(6)),
+                    _ => Mode::LeftOut(NO_FIX),
+                };
+                Self { position: position(0), ..at(4) }.with(mode)
             }
             "RMC" => {
-                let valid = field(1) == "A";
-                Self {
-                    of_day_ns: of_day_ns(0),
-                    day_ns: short_date(field(8)),
-                    position: position(2).filter(|_| valid),
-                    velocity_mps: velocity(6, 7).filter(|_| valid),
-                    ..none
-                }
+                let mode = match field(1) {
+                    "A" => Mode::of_letters(field(11)),
+                    _ => Mode::LeftOut(NO_FIX),
+                };
+                let day_ns = short_date(field(8));
+                let velocity_mps = velocity(6, 7);
+                Self { day_ns, position: position(2), velocity_mps, ..at(0) }.with(mode)
             }
             "ZDA" => {
                 let day = |index: usize| field(index).parse::<i64>().ok();
                 let day_ns = date(day(3)?, day(2)?, day(1)?);
-                Self { of_day_ns: of_day_ns(0), day_ns, is_date_alone: true, ..none }
+                Self { day_ns, is_date_alone: true, ..at(0) }
             }
             "VTG" => {
-                let valid = !matches!(field(8), "N");
-                Self { velocity_mps: velocity(4, 0).filter(|_| valid), ..none }
+                let velocity_mps = Some(velocity(4, 0)?);
+                let found = Self { talker, velocity_mps, ..Self::default() };
+                found.with(Mode::of_letters(field(8)))
             }
-            "PASHR" => {
-                let [heading, roll, pitch] = [number(1)?, number(3)?, number(4)?];
-                let attitude_rad = Some([roll, pitch, heading].map(f64::to_radians));
-                Self { of_day_ns: of_day_ns(0), attitude_rad, ..none }
+            "GST" => Self { sigma_m: Some([number(5)?, number(6)?]), ..at(0) },
+            _ => {
+                let value = [number(3)?, number(4)?, number(1)?].map(f64::to_radians);
+                let resolution = [3, 4, 1].map(|index| last_digit(field(index)).to_radians());
+                let sigma = number(6).zip(number(7)).zip(number(8));
+                let attitude_sigma_rad = sigma
+                    .map(|((roll, pitch), heading)| [roll, pitch, heading].map(f64::to_radians));
+                let attitude_rad = Some(Said { value, resolution, talker, kind: named });
+                Self { attitude_rad, attitude_sigma_rad, ..at(0) }
             }
-            _ => return None,
-        };
-        // A sentence with a time that can't be read must not go to the point before it.
-        let needs_time = kind != "VTG";
-        (!needs_time || sentence.of_day_ns.is_some()).then_some(sentence)
+        })
+    }
+
+    /// The sentence, with as much as its mode allows.
+    fn with(self, mode: Mode) -> Self {
+        let has_position = self.position.is_some();
+        match mode {
+            Mode::Fix(quality) => Self { quality: has_position.then_some(quality), ..self },
+            Mode::Estimated(quality) => {
+                let quality = has_position.then_some(quality);
+                Self { quality, is_estimated: true, ..self }
+            }
+            Mode::LeftOut(reason) => self.without(reason),
+        }
+    }
+
+    /// The time of the sentence alone, and the reason.
+    pub(super) fn without(self, reason: &'static str) -> Self {
+        let Self { talker, of_day_ns, day_ns, is_date_alone, .. } = self;
+        let left_out = Some(reason);
+        Self { talker, of_day_ns, day_ns, is_date_alone, left_out, ..Self::default() }
     }
 }
 
@@ -258,8 +381,11 @@ mod tests {
         let [north, east] = found.velocity_mps.unwrap().value;
         let speed = 0.02 * 1852.0 / 3600.0;
         assert!((libm::hypot(north, east) - speed).abs() < 1e-15 && east > 0.0);
-        assert!(Sentence::of(&gga.replace("*76", "*77")).is_none(), "a wrong checksum");
-        assert!(Sentence::of(&format!("2011-05-28 09:27:51 {gga}")).is_some(), "a logger's stamp");
+        assert!(
+            Sentence::of(&gga.replace("*76", "*77")).err() == Some(DAMAGED),
+            "a wrong checksum"
+        );
+        assert!(Sentence::of(&format!("2011-05-28 09:27:51 {gga}")).is_ok(), "a logger's stamp");
     }
 
     #[test]

@@ -2272,8 +2272,8 @@ class SourceFmu(Section):
 class SourceLive(Section):
     """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol, database,
     mapping, description, axes, gyro_count, accel_count, silence, pps, pps_edge, pps_silence, stamps,
-    stamps_within, host_clock, host_within, tai_offset. Default: serial, udp, can and slcan: the defaults of
-    its keys."""
+    stamps_within, host_clock, host_within, tai_offset. Default: serial, udp, tcp, can and slcan: the defaults
+    of its keys."""
 
     accel_count: str
     """Velocity of one accelerometer count, likewise. Takes a velocity such as "1 mm/s". Left out: by the kind of
@@ -2484,9 +2484,9 @@ class SourceReference(Section):
     """Velocity up, in place of down. Takes a column number from 1, or a column's name. Left out: down is given."""
 
 class SourceSolution(Section):
-    """How the solution of source.uri is read. Takes a table with skip, format, delimiter, skip_lines, comment,
-    time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll, angle_unit,
-    velocity_unit. Default: solution: the defaults of its keys."""
+    """How the solution of source.uri is read. Takes a table with skip, format, talker, delimiter, skip_lines,
+    comment, time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll,
+    angle_unit, velocity_unit. Default: solution: the defaults of its keys."""
 
     angle_unit: Literal["deg", "rad"]
     """Unit of the columns of angles: position and attitude. Takes one of "deg", "rad". Default: "deg"."""
@@ -2527,6 +2527,9 @@ class SourceSolution(Section):
     s"."""
     skip_lines: int
     """Columns of text: lines to skip at the start. Takes a whole number from 0 to 1000000. Default: 0."""
+    talker: str
+    """NMEA: letters of the talker whose sentences count, such as IN; dates count from all. PASHR has no talker,
+    and always counts. Takes a text in quotes. Left out: all talkers, which have to agree."""
     time_column: int | str
     """Time of each row, in time_unit, or as 2027-03-31T08:00:00.5Z: its column, a name in the header or a number
     from 1. Takes a column number from 1, or a column's name. Default: the name of Octant's exports, where the
@@ -2640,14 +2643,14 @@ class SourceText(Section):
     temperature_unit: Literal["degC", "K"]
     """Unit of the temperature. Takes one of "degC", "K". Default: "degC"."""
     time_column: int | str
-    """Column of the time stamp; "none": rows without one, which follow each other at the nominal rate. Takes a
-    column number from 1, or a column's name. Default: 1."""
+    """Column of the time stamp, in time_unit or such as 2027-03-31T08:00:00.5Z; "none": rows without one, which
+    follow each other at the nominal rate. Takes a column number from 1, or a column's name. Default: 1."""
     time_unit: Literal["s", "ms", "us", "ns"]
     """Unit of the time stamp. Takes one of "s", "ms", "us", "ns". Default: "s"."""
 
 class SourceTrajectory(Section):
     """The reference trajectory that a solution is scored against. Takes a table with file, offset,
-    offset_uncertainty, gap, format, delimiter, skip_lines, comment, time_column, time_unit, latitude,
+    offset_uncertainty, gap, format, talker, delimiter, skip_lines, comment, time_column, time_unit, latitude,
     longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by
     solution:FILE."""
 
@@ -2698,6 +2701,9 @@ class SourceTrajectory(Section):
     the name of Octant's exports, where the header has it."""
     skip_lines: int
     """Columns of text: lines to skip at the start. Takes a whole number from 0 to 1000000. Default: 0."""
+    talker: str
+    """NMEA: letters of the talker whose sentences count, such as IN; dates count from all. PASHR has no talker,
+    and always counts. Takes a text in quotes. Left out: all talkers, which have to agree."""
     time_column: int | str
     """Time of each row, in time_unit, or as 2027-03-31T08:00:00.5Z: its column, a name in the header or a number
     from 1. Takes a column number from 1, or a column's name. Default: the name of Octant's exports, where the
@@ -2721,8 +2727,8 @@ class Source(Section):
     def live(self) -> SourceLive:
         """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol,
         database, mapping, description, axes, gyro_count, accel_count, silence, pps, pps_edge, pps_silence,
-        stamps, stamps_within, host_clock, host_within, tai_offset. Default: serial, udp, can and slcan: the
-        defaults of its keys."""
+        stamps, stamps_within, host_clock, host_within, tai_offset. Default: serial, udp, tcp, can and slcan:
+        the defaults of its keys."""
     @live.setter
     def live(self, value: SourceLive | Mapping[str, Any]) -> None: ...
     @property
@@ -2749,9 +2755,9 @@ class Source(Section):
     def reference(self, value: SourceReference | Mapping[str, Any]) -> None: ...
     @property
     def solution(self) -> SourceSolution:
-        """How the solution of source.uri is read. Takes a table with skip, format, delimiter, skip_lines,
-        comment, time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll,
-        angle_unit, velocity_unit. Default: solution: the defaults of its keys."""
+        """How the solution of source.uri is read. Takes a table with skip, format, talker, delimiter,
+        skip_lines, comment, time_column, time_unit, latitude, longitude, height, north, east, heading, pitch,
+        roll, angle_unit, velocity_unit. Default: solution: the defaults of its keys."""
     @solution.setter
     def solution(self, value: SourceSolution | Mapping[str, Any]) -> None: ...
     @property
@@ -2764,14 +2770,14 @@ class Source(Section):
     @property
     def trajectory(self) -> SourceTrajectory:
         """The reference trajectory that a solution is scored against. Takes a table with file, offset,
-        offset_uncertainty, gap, format, delimiter, skip_lines, comment, time_column, time_unit, latitude,
-        longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by
-        solution:FILE."""
+        offset_uncertainty, gap, format, talker, delimiter, skip_lines, comment, time_column, time_unit,
+        latitude, longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out:
+        needed by solution:FILE."""
     @trajectory.setter
     def trajectory(self, value: SourceTrajectory | Mapping[str, Any]) -> None: ...
     uri: str
     """Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.
-    Takes one of "plant", "replay", "text", "solution", "log", "fmu", "serial", "udp", "can", "slcan".
+    Takes one of "plant", "replay", "text", "solution", "log", "fmu", "serial", "udp", "tcp", "can", "slcan".
     Default: "plant"."""
 
 class TurntableDrawnEccentricity(Section):

@@ -62,6 +62,7 @@ pub(crate) fn summary() -> Summary {
             velocity_east_error_mps: None,
             slope_window: None,
             marks: BTreeMap::new(),
+            gaps: None,
             series_hours: vec![[0.0, 0.0, 0.0], [1.0, 0.1, -0.6]],
         }),
         baseline: None,

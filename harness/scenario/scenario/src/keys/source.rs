@@ -223,7 +223,7 @@ keys! {
             "Whether the first line after those skipped names the columns.";
         comment: String = text(), "#", "Lines that start with this are skipped.";
         time_column: At<RecordedColumn> = column(), "1",
-            "Column of the time stamp; \"none\": rows without one, which follow each other at the nominal rate.";
+            "Column of the time stamp, in time_unit or such as 2027-03-31T08:00:00.5Z; \"none\": rows without one, which follow each other at the nominal rate.";
         time_unit: TimeUnit = time_unit(), "s", "Unit of the time stamp.";
         temperature_column: At<Option<RecordedColumn>> = column(), absent("the file has no temperature"),
             "Column of the instrument's temperature, in the gyro's file; octant characterise reads it.";

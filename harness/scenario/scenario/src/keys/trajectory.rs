@@ -20,6 +20,9 @@ const BY_NAME: &str =
     "by the name's ending: nmea and nma; pos; sbet and out; others are columns of text";
 const THERE: &str = "the name of Octant's exports, where the header has it";
 
+/// Largest offset, s: from a clock that begins with zero to any time of GPS.
+const OFFSET_MAX_S: f64 = 4e9;
+
 /// Keys of a file with positions over time.
 macro_rules! trajectory {
     ($(#[$attribute:meta])* $name:ident { $($more:tt)* }) => {
@@ -37,6 +40,8 @@ macro_rules! trajectory {
                         "vectornav" => TrajectoryForm::Messages(NavigationProtocol::VectorNav), "what a VectorNav unit sent in binary, with its position";
                         "xsens" => TrajectoryForm::Messages(NavigationProtocol::Xsens), "what an Xsens unit sent as MTData2, with LatLon";
                     }, derived(BY_NAME), "What the file is.";
+                talker: At<Option<String>> = text(), absent("all talkers, which have to agree"),
+                    "NMEA: letters of the talker whose sentences count, such as IN; dates count from all. PASHR has no talker, and always counts.";
                 delimiter: Delimiter = choice! {
                         "whitespace" => Delimiter::Blanks, "any run of blanks and tabs";
                         "comma" => Delimiter::Character(b','), ",";
@@ -77,7 +82,7 @@ trajectory! {
     /// `[source.trajectory]`.
     ReferenceTrajectoryKeys {
         file: String = text(), required, "Its file. Relative to the scenario.";
-        offset: Option<f64> = time(-1e6, 1e6, "from -1e6 to 1e6 s"),
+        offset: Option<f64> = time(-OFFSET_MAX_S, OFFSET_MAX_S, "from -4e9 to 4e9 s"),
             absent("0 s, if both files tell the time on a scale that is known; else it has to be given"),
             "What is added to the solution's times to get those of this file.";
         offset_uncertainty: f64 = time(0.0, 60.0, "from 0 to 60 s"), "0 s",

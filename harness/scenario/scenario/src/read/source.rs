@@ -114,6 +114,7 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
         delimiter: keys.delimiter,
         comment: keys.comment.clone(),
         skip_lines: keys.skip_lines,
+        header: keys.header,
         gimbal: gimbal.transpose()?,
         temperature,
     })

@@ -6,7 +6,9 @@ use crate::keys::{
 };
 use crate::model::{EndpointSpec, FileName, Scenario, SourceSpec};
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
-use crate::trajectory::{SolutionSpec, TrajectoryColumns, TrajectoryFormat, TrajectorySpec};
+use crate::trajectory::{
+    NmeaChoice, SolutionSpec, TrajectoryColumns, TrajectoryFormat, TrajectorySpec,
+};
 
 /// Reads the solution of `source.uri = "solution:FILE"`.
 pub(super) fn solution(keys: &SourceKeys, file: &str) -> Result<SolutionSpec, Problem> {
@@ -17,7 +19,7 @@ pub(super) fn solution(keys: &SourceKeys, file: &str) -> Result<SolutionSpec, Pr
     };
     let solution = match &keys.solution {
         Some(solution) => solution.format(file)?,
-        None => format_of(None, file, || Ok(TrajectoryColumns::default()))?,
+        None => format_of(None, file, NmeaChoice::default(), || Ok(TrajectoryColumns::default()))?,
     };
     let reference = trajectory.format(&trajectory.file)?;
     let spec = |file: &str, format| TrajectorySpec { file: FileName(file.to_owned()), format };
@@ -81,6 +83,7 @@ impl Default for TrajectoryColumns {
 fn format_of(
     form: Option<TrajectoryForm>,
     file: &str,
+    choice: NmeaChoice,
     columns: impl FnOnce() -> Result<TrajectoryColumns, Problem>,
 ) -> Result<TrajectoryFormat, Problem> {
     let name = file.to_ascii_lowercase();
@@ -90,22 +93,40 @@ fn format_of(
             .any(|ending| name.rsplit_once('.').is_some_and(|(_, found)| found == *ending))
     };
     Ok(match form {
-        Some(TrajectoryForm::Nmea) => TrajectoryFormat::Nmea,
+        Some(TrajectoryForm::Nmea) => TrajectoryFormat::Nmea(choice),
         Some(TrajectoryForm::Rtklib) => TrajectoryFormat::Rtklib,
         Some(TrajectoryForm::Sbet) => TrajectoryFormat::Sbet,
         Some(TrajectoryForm::Messages(protocol)) => TrajectoryFormat::Messages(protocol),
-        None if ends(&["nmea", "nma"]) => TrajectoryFormat::Nmea,
+        None if ends(&["nmea", "nma"]) => TrajectoryFormat::Nmea(choice),
         None if ends(&["pos"]) => TrajectoryFormat::Rtklib,
         None if ends(&["sbet", "out"]) => TrajectoryFormat::Sbet,
         Some(TrajectoryForm::Csv) | None => TrajectoryFormat::Csv(Box::new(columns()?)),
     })
 }
 
+/// Letters of a talker.
+fn talker(key: &At<Option<String>>) -> Result<Option<String>, Problem> {
+    match &key.value {
+        Some(talker)
+            if !(1..=5).contains(&talker.len())
+                || !talker.bytes().all(|byte| byte.is_ascii_alphanumeric()) =>
+        {
+            Err(key.problem(format!(
+                "found {talker:?}, expected the letters of a talker, such as \"GP\""
+            )))
+        }
+        talker => Ok(talker.as_deref().map(str::to_ascii_uppercase)),
+    }
+}
+
 macro_rules! columns_of {
     ($($keys:ty: $truth_first:literal),+) => { $(
         impl $keys {
             fn format(&self, file: &str) -> Result<TrajectoryFormat, Problem> {
-                format_of(self.format, file, || {
+                let choice =
+                    NmeaChoice { talker: talker(&self.talker)?, fixes_alone: $truth_first };
+                let talker = &self.talker;
+                let format = format_of(self.format, file, choice, || {
                     let column = |key: &At<Option<RecordedColumn>>| key.value.clone();
                     Ok(TrajectoryColumns {
                         truth_first: $truth_first,
@@ -119,7 +140,13 @@ macro_rules! columns_of {
                         angle_rad: self.angle_unit.unit_si()?,
                         velocity_mps: self.velocity_unit.unit_si()?,
                     })
-                })
+                })?;
+                if talker.is_some() && !matches!(format, TrajectoryFormat::Nmea(_)) {
+                    return Err(talker.problem(format!(
+                        "found with {file}, which is no NMEA 0183, expected format = \"nmea\" or no talker"
+                    )));
+                }
+                Ok(format)
             }
         }
     )+ };

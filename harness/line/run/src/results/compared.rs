@@ -1,0 +1,133 @@
+//! What the comparison of a solution with its reference adds to the verdict: bands by the standard deviations that the
+//! reference states, and doubts where the solution is too like its reference.
+
+use super::method::MethodRun;
+use octant_base::number::plain;
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
+use octant_scenario::Scenario;
+use octant_trajectory::Comparison;
+use octant_trajectory::comparison::{ErrorName, Quantity};
+
+/// Standard deviations in an expanded uncertainty (95 %).
+const EXPANDED: f64 = 1.96;
+/// Fewest points that show it.
+const POINTS_LEAST: u64 = 30;
+
+/// Error of a measure of the navigation, and units of its scores in one of the error.
+fn error_of(bare: &str, scenario: &Scenario) -> Option<(ErrorName, f64)> {
+    let earth = Ellipsoid::at(scenario.site.latitude_rad, scenario.site.height_m);
+    let across_m = earth.transverse_radius_m * earth.cos_latitude;
+    let has = |part: &str| bare.contains(part);
+    Some(if has("heading") {
+        (ErrorName::Heading, 1.0 / ARCMIN)
+    } else if has("pitch") {
+        (ErrorName::Pitch, 1.0 / ARCMIN)
+    } else if has("roll") {
+        (ErrorName::Roll, 1.0 / ARCMIN)
+    } else if has("velocity_north") {
+        (ErrorName::North, 1.0)
+    } else if has("velocity_east") {
+        (ErrorName::East, 1.0)
+    } else if has("latitude") {
+        (ErrorName::Latitude, 1.0 / (ARCMIN * earth.meridian_radius_m))
+    } else if has("longitude") {
+        (ErrorName::Longitude, 1.0 / (ARCMIN * across_m))
+    } else if has("radial") {
+        (ErrorName::Radial, 1.0 / NAUTICAL_MILE_M)
+    } else {
+        return None;
+    })
+}
+
+/// Expanded uncertainty (95 %) of a measure, in its unit, by the standard deviations that the reference states.
+pub(super) fn band(comparison: &Comparison, measure: &str, scenario: &Scenario) -> Option<f64> {
+    let bare = measure.trim_matches('|').strip_prefix("navigation.")?;
+    let (error, units) = error_of(bare, scenario)?;
+    let score = bare.rsplit('.').next().unwrap_or(bare);
+    let score = if score.contains("_max_") { "max" } else { score };
+    let hours =
+        scenario.navigation.as_ref().and_then(|plan| plan.duration_s).unwrap_or(3600.0) / 3600.0;
+    let over_time = match score {
+        "slope_per_day" => 48.0 / hours,
+        "rate_per_h" => 1.5 / hours,
+        _ => 1.0,
+    };
+    comparison.band(error).of(score).map(|band| band * units * over_time)
+}
+
+/// Text of the standard deviations of the position that the reference states.
+pub(super) fn stated(comparison: &Comparison) -> Option<String> {
+    let sigma_m = comparison.band(ErrorName::Radial).sigma()?;
+    Some(format!(
+        "the reference's own standard deviations, of {} m rms, where they leave more open",
+        plain(sigma_m, 3)
+    ))
+}
+
+/// Standard deviation of the reference's quantity: that which is stated, else that of the file.
+fn sigma(scenario: &Scenario, comparison: &Comparison, quantity: Quantity) -> Option<f64> {
+    let (names, error, units): (&[&str], _, _) = match quantity {
+        Quantity::Position => {
+            let stated_m = scenario.decision.position_m;
+            let of_file = || comparison.band(ErrorName::Radial).sigma();
+            return stated_m.map(|stated_m| stated_m / EXPANDED).or_else(of_file);
+        }
+        Quantity::Velocity => (&["velocity_north", "velocity_east"], ErrorName::North, 1.0),
+        Quantity::Roll => (&["roll"], ErrorName::Roll, ARCMIN),
+        Quantity::Pitch => (&["pitch"], ErrorName::Pitch, ARCMIN),
+        Quantity::Heading => (&["heading"], ErrorName::Heading, ARCMIN),
+    };
+    let of_value = |measure: &str| {
+        let score = measure.rsplit('.').next().unwrap_or(measure);
+        measure.starts_with("navigation.")
+            && names.iter().any(|name| measure.contains(name))
+            && matches!(score, "max" | "rms" | "final")
+    };
+    let stated = scenario.decision.uncertainties.iter().filter(|u| of_value(&u.measure));
+    let least = stated.map(|u| u.uncertainty * units / EXPANDED).reduce(f64::min);
+    least.filter(|sigma| *sigma > 0.0).or_else(|| comparison.band(error).sigma())
+}
+
+/// Reasons why a solution is too like its reference to show anything of the instrument.
+pub(super) fn too_like(scenario: &Scenario, run: &MethodRun) -> Vec<String> {
+    let Some(comparison) = &run.bench.compared else { return Vec::new() };
+    Quantity::ALL
+        .into_iter()
+        .filter_map(|quantity| too_like_in(scenario, comparison, quantity))
+        .collect()
+}
+
+fn too_like_in(scenario: &Scenario, comparison: &Comparison, quantity: Quantity) -> Option<String> {
+    let sigma = sigma(scenario, comparison, quantity)?;
+    let likeness = comparison.likeness(quantity);
+    if !likeness.varies() || likeness.points() < POINTS_LEAST {
+        return None;
+    }
+    let axes = likeness.axes();
+    let as_it_is =
+        likeness.differences().filter(|differences| differences.is_too_small(axes, sigma));
+    // A delay may take up what is constant on one axis.
+    let late = || likeness.after_delay().filter(|left| left.is_too_small(1, sigma));
+    let found = as_it_is.or_else(late)?;
+    let (unit, scale) = match quantity {
+        Quantity::Position => ("m", 1.0),
+        Quantity::Velocity => ("m/s", 1.0),
+        _ => ("arcmin", 1.0 / ARCMIN),
+    };
+    let number = |value: f64| plain(value * scale, 3);
+    let how = match found.delay_s {
+        None => String::new(),
+        Some(delay_s) if delay_s >= 0.0 => format!(" {} s before", plain(delay_s, 4)),
+        Some(delay_s) => format!(" {} s later", plain(-delay_s, 4)),
+    };
+    Some(format!(
+        "the {} of the solution are those of the reference{how}, but for {} {unit} (1 sigma) about a mean of {} {unit}: far \
+         below the reference's own uncertainty of {} {unit} (95 %), which errors of an independent reference are with a \
+         probability of 1 % at most; expected a reference that has no part in the solution, or its uncertainty as it is",
+        quantity.name(),
+        number(found.scatter),
+        number(found.mean),
+        number(EXPANDED * sigma),
+    ))
+}
