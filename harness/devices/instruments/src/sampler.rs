@@ -28,7 +28,7 @@ pub enum Unusable {
     Behind,
     /// The unit was restarted, or its clock was set back: its readings go on from there.
     #[error(
-        "the unit was restarted, or its clock set: readings go on at {to_s} s after {from_s} s, expected one clock and one \
+        "the unit was restarted, or its clock set: readings go on at {to_s:.3} s after {from_s:.3} s, expected one clock and one \
          counter without a restart"
     )]
     Restarted {
@@ -39,7 +39,7 @@ pub enum Unusable {
     },
     /// The clock jumps ahead by more than a day.
     #[error(
-        "the unit's clock jumps ahead by more than a day, from {from_s} s to {to_s} s: it was set"
+        "the unit's clock jumps ahead by more than a day, from {from_s:.3} s to {to_s:.3} s: it was set"
     )]
     Jumped {
         /// Stamp before, s.
@@ -72,6 +72,10 @@ pub struct SamplerCounters {
     pub incomplete: u64,
     /// Readings whose interval differs from the period by more than a twentieth.
     pub irregular: u64,
+    /// Samples with a status by which the core doesn't believe them: invalid, or an axis out of range.
+    pub flagged: u64,
+    /// Flagged samples whose stamps are off the fitted time.
+    pub flagged_shifted: u64,
 }
 
 /// Converts readings to samples.
@@ -101,6 +105,10 @@ struct Behind {
     place: u64,
     count: u32,
 }
+
+/// Status by which the core doesn't believe a sample.
+const DISBELIEVED: Status =
+    Status::INERTIAL_INVALID.union(Status::GYRO_SATURATED).union(Status::ACCELEROMETER_SATURATED);
 
 /// Number of readings behind the last sample that make a restart: single ones come late.
 const RESTART: u32 = 3;
@@ -172,6 +180,7 @@ impl Sampler {
             return Err(if no_rotation { Unusable::NoRotation } else { Unusable::NoVelocity });
         };
         let stamp_ns = reading.stamp.map(|stamp| stamp.ns);
+        let shifted_before = self.timeline.tally().shifted;
         let placed = match self.timeline.place(stamp_ns, reading.sequence, || Ahead::NONE) {
             Ok(placed) => placed,
             Err(misplaced) => return Err(self.misplaced(misplaced, reading.sequence.or(stamp_ns))),
@@ -212,6 +221,10 @@ impl Sampler {
         }
         self.counters.missing += missing;
         self.counters.samples += 1;
+        if status.intersects(DISBELIEVED) {
+            self.counters.flagged += 1;
+            self.counters.flagged_shifted += self.timeline.tally().shifted - shifted_before;
+        }
         // Time begins with the interval of the first reading.
         let first_ns = *self.first_ns.get_or_insert(time_ns.wrapping_sub(interval_ns));
         let ns = time_ns.wrapping_sub(first_ns);

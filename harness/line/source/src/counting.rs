@@ -313,15 +313,21 @@ impl Counting {
         // Rows that wait when a run ends before its file are not read yet.
         let used = tally.placed - tally.shifted;
         let rest = AccountEntry::new(
-            u64::from(!self.has_ended),
+            u64::from(!self.has_ended || !self.rows.is_empty()),
             "end of the run before the end of the file: the rest is not read",
         );
+        let saturated = AccountEntry::new(
+            self.saturated(),
+            "samples with a value that doesn't fit a count, which the core doesn't believe",
+        )
+        .remedy("split makes several samples of a row");
         let mut account = Account::new(path, unit)
             .used(used)
             .repaired(shifted)
             .left_out(repeated)
             .missing(self.missing())
             .note(rest)
+            .note(saturated)
             .clock(Some(self.clock(outside)));
         if self.timeline.is_blind() {
             let note = AccountEntry::new(
@@ -377,6 +383,11 @@ impl Counting {
         let hz = |hz: f64| plain(hz, 6);
         match misplaced {
             Misplaced::Repeated => format!("the {one} is there twice"),
+            Misplaced::Back { from_s, to_s } if from_s == to_s => format!(
+                "the stamps stand still at {} s: they are too coarse for {} Hz; {other}",
+                s(to_s),
+                hz(self.rate_hz)
+            ),
             Misplaced::Back { from_s, to_s } => format!(
                 "the clock goes back from {} s to {} s: it was set, or the unit was restarted; {other}",
                 s(from_s),

@@ -129,6 +129,9 @@ impl<R: Read> Foreign<R> {
                 .map_err(|error| self.messages.in_message_number(error.place, &error.reason))?;
             match counted {
                 Counted::Sample(sample) => return Ok(Some(Epoch { sample, aiding: None })),
+                Counted::End if self.messages.number() == 0 => {
+                    return Err(self.messages.no_message());
+                }
                 Counted::End => return Ok(None),
                 Counted::More => match self.messages.next()? {
                     Some(message) => {

@@ -101,6 +101,11 @@ impl<R: Read> Joined<R> {
         self.gyro.number()
     }
 
+    /// Describes a topic without a message.
+    pub(super) fn no_message(&self) -> String {
+        self.gyro.no_message()
+    }
+
     /// Clock of the stamps against the one that logged them.
     pub(super) fn outside(&self) -> Option<OutsideClock> {
         self.gyro.outside()

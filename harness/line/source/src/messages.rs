@@ -101,6 +101,11 @@ impl<R: Read> TopicMessages<R> {
         format!("message {number} on {}: {reason}", self.topic)
     }
 
+    /// Describes a topic without a message.
+    pub(super) fn no_message(&self) -> String {
+        format!("no message on {}, expected those of the instrument", self.topic)
+    }
+
     /// Number of the last message, from 1.
     pub(super) const fn number(&self) -> u64 {
         self.messages

@@ -116,8 +116,23 @@ impl Rows {
                     }
                 }
             }
-            return Ok(true);
+            return self.check_width().map(|()| true);
         }
+    }
+
+    /// Checks that a row has no more fields than the header has names: a comma in a number makes two of one. One empty field
+    /// more is the delimiter at the end of a line.
+    fn check_width(&self) -> Result<(), SourceError> {
+        let Some(names) = self.header.as_ref().map(StringRecord::len) else { return Ok(()) };
+        let fields = self.fields.len();
+        let is_end = |fields: &StringRecord| fields.len() == names + 1 && fields[names].is_empty();
+        if fields <= names || is_end(&self.fields) {
+            return Ok(());
+        }
+        Err(self.error(format!(
+            "found {}, expected {names} as in the header",
+            counted(fields, "column", "columns")
+        )))
     }
 
     /// Returns the index of a column, from 0.

@@ -16,7 +16,7 @@ pub(super) fn account(
     let (counters, tally) = (sampler.counters(), sampler.timeline().tally());
     let period_ms = 1e3 / sampler.rate_hz();
     let shifted = AccountEntry::new(
-        tally.shifted,
+        tally.shifted - counters.flagged_shifted,
         format!(
             "readings with stamps off the fitted time by more than {} ms, and given that time",
             plain(SHIFTED * period_ms, 3)
@@ -48,10 +48,16 @@ pub(super) fn account(
         increments: sampler.has_increments(),
         outside,
     };
+    let flagged = AccountEntry::new(
+        counters.flagged,
+        "readings that the unit calls invalid or out of range; the core bridges them",
+    );
+    let believed = counters.samples - counters.flagged;
     let account = Account::new(name, ["reading", "readings"])
-        .used(counters.samples - tally.shifted)
+        .used(believed - (tally.shifted - counters.flagged_shifted))
         .repaired(shifted)
         .left_out(behind)
+        .left_out(flagged)
         .left_out(AccountEntry::new(counters.incomplete, "readings without rotation or velocity"))
         .missing(missing)
         .note(disagreeing.weight(Weight::Doubt))

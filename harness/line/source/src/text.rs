@@ -104,6 +104,10 @@ impl TextSource {
         loop {
             match self.counting.next().map_err(|error| self.placed(error))? {
                 Counted::Sample(sample) => return Ok(Some(Epoch { sample, aiding: None })),
+                Counted::End if self.rows == 0 => {
+                    let reason = "the file ends, expected rows of numbers".to_owned();
+                    return Err(self.first.rows.error(reason));
+                }
                 Counted::End => return Ok(None),
                 Counted::More if self.read_row()? => {}
                 Counted::More => self.counting.end(),

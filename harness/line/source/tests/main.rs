@@ -6,6 +6,7 @@ mod common {
     pub(super) mod stream;
 }
 
+mod accounts;
 #[cfg(unix)]
 #[cfg(feature = "can")]
 mod can_source;

@@ -5,6 +5,7 @@
 
 mod common;
 
+mod accounts;
 mod allan;
 mod architecture;
 mod campaign;

@@ -13,6 +13,9 @@ const DRIFT_VARIANCE: f64 = 36.0 / (MEMORY * MEMORY * MEMORY * MEMORY);
 /// Memory of the scatter, in readings.
 const SCATTER_MEMORY: f64 = 500.0;
 
+/// Standard deviation of the nominal period, as a share: rates that differ by more than 5 % are refused.
+const NOMINAL_SIGMA: f64 = 0.02;
+
 /// Number of readings whose mean shows a gap that single stamps don't.
 const BLOCK: u32 = 64;
 
@@ -73,6 +76,9 @@ impl Line {
         self.phase_ns = mean;
         (self.square_ns2, self.squares) = (square, n as f64);
         self.variance[0] = 4.0 / n as f64;
+        // Stamps in bursts aren't independent: a burst must not be taken for another rate.
+        let nominal_ns = NOMINAL_SIGMA * self.period_ns;
+        self.variance[2] = self.variance[2].min(nominal_ns * nominal_ns / square.max(1.0));
     }
 
     /// Returns whether the scatter is known.

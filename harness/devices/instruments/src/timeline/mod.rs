@@ -222,14 +222,18 @@ impl Timeline {
         if off_ns > JUMP_MAX_NS {
             return Err(jump(before, now));
         }
-        if let Some(spacing_ns) = ahead.spacing_ns(now)
-            && (spacing_ns / period_ns - 1.0).abs() > 0.25
+        let spacing = ahead.spacing_ns(now).map(|spacing_ns| (spacing_ns, spacing_ns / period_ns));
+        let is_regular = spacing.is_some_and(|(_, ratio)| (ratio - 1.0).abs() <= 0.25);
+        if let Some((spacing_ns, _)) = spacing
+            && !is_regular
             && off_ns.abs() < 4.0 * spacing_ns.max(period_ns)
         {
+            let changed = self.tally.placed >= FEW;
+            let expected_ns = if changed { period_ns } else { self.nominal_ns };
             return Err(Misplaced::Rate {
                 found_hz: 1e9 / spacing_ns,
-                expected_hz: 1e9 / period_ns,
-                changed: self.tally.placed >= FEW,
+                expected_hz: 1e9 / expected_ns,
+                changed,
             });
         }
         let (mut least, mut most, mut sum, mut n) = (off_ns, off_ns, off_ns, 1.0);
@@ -240,7 +244,8 @@ impl Timeline {
         }
         let mean = sum / n;
         let scatter_ns = state.line.scatter_ns();
-        let is_sharp = state.line.is_settled() && scatter_ns < 0.2 * period_ns;
+        // Stamps behind it that are regular show a gap by themselves; behind others the mean counts.
+        let is_sharp = is_regular || (state.line.is_settled() && scatter_ns < 0.2 * period_ns);
         // Four standard errors of the mean of the stamps looked at.
         let seen_ns = (0.6 * period_ns).max(4.0 * scatter_ns / libm::sqrt(n));
         if off_ns > 0.0 {
@@ -340,10 +345,12 @@ impl Timeline {
             let alike = if state.strays.0 == steps { state.strays.1 + 1 } else { 1 };
             state.strays = if steps > 1 { (steps, alike) } else { (0, 0) };
             if counter.is_none() && alike >= STRAYS {
+                let changed = self.tally.placed >= FEW + u64::from(STRAYS);
+                let expected_ns = if changed { period_ns } else { self.nominal_ns };
                 return Err(Misplaced::Rate {
                     found_hz: 1e9 / (steps as f64 * period_ns),
-                    expected_hz: 1e9 / period_ns,
-                    changed: true,
+                    expected_hz: 1e9 / expected_ns,
+                    changed,
                 });
             }
         }

@@ -4,6 +4,7 @@
 use super::clock_doubt::clock_doubt;
 use super::compared::too_like;
 use super::method::{MethodRun, planned_of};
+use super::refusal::Seen;
 use crate::bench::ended::Ended;
 use octant_account::Account;
 use octant_base::number;
@@ -32,7 +33,7 @@ pub fn findings(
         baseline.map(|run| (run, Method::Baseline, format!(" in {}", run.label))),
     ];
     for (run, method, place) in methods.into_iter().flatten() {
-        findings.extend(of_bench(&scenario.realtime, run, &place));
+        findings.extend(of_bench(scenario, run, &place));
         let too_like = too_like(scenario, run).into_iter();
         findings.extend(too_like.map(|reason| Finding::of_bench(Verdict::Inconclusive, reason)));
         findings.extend(of_unit(scenario, run, method, &place));
@@ -48,7 +49,7 @@ pub fn findings(
 }
 
 /// Lists errors of the bench.
-fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
+fn of_bench(scenario: &Scenario, run: &MethodRun, place: &str) -> Vec<Finding> {
     let mut reasons = Vec::new();
     if let Some(broke) = &run.observed.answers.bench_broke {
         let at = duration(broke.at_s);
@@ -67,10 +68,22 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
     let calibration = run.calibration.as_ref().filter(|c| c.refused.is_none());
     let clocks = run.bench.inputs.iter().filter_map(|input| clock_doubt(input, calibration?));
     reasons.extend(clocks.map(|doubt| format!("{doubt}{place}")));
+    reasons.extend(lacking(scenario, run).map(|lacking| format!("{lacking}{place}")));
     let pacing = run.bench.kept.as_ref().map(|kept| &kept.pacing);
-    reasons.extend(pacing.map(|pacing| too_late(limits, pacing)).unwrap_or_default());
+    reasons.extend(pacing.map(|pacing| too_late(&scenario.realtime, pacing)).unwrap_or_default());
     let inconclusive = |reason| Finding::of_bench(Verdict::Inconclusive, reason);
     reasons.into_iter().map(inconclusive).collect()
+}
+
+/// Describes an input that lacks samples, where the calibration was refused for them: the unit isn't responsible.
+fn lacking(scenario: &Scenario, run: &MethodRun) -> Option<String> {
+    let refused = run.calibration.as_ref()?.refused.as_ref()?;
+    if Seen::of(refused) != Seen::Samples || !scenario.faults.is_empty() {
+        return None;
+    }
+    let lacks = |input: &&Account| input.missing_count() + input.left_out_count() > 0;
+    let input = run.bench.inputs.iter().find(lacks)?;
+    Some(format!("{}: the calibration was refused for the samples that it lacks", input.headline()))
 }
 
 /// Lists where the bench was late, lost samples, or did not send them.
