@@ -140,6 +140,7 @@ fn rows_of_damaged_text() {
                 delimiter: Delimiter::Character(b','),
                 comment: "#".into(),
                 skip_lines: 0,
+                header: false,
                 gimbal: None,
                 temperature: None,
             };
