@@ -171,3 +171,62 @@ fn every_protocol_makes_the_same_samples() {
         assert!(sums[0].abs() < 2e-10 && sums[1].abs() < 1e-8, "{protocol:?} {sums:?}");
     }
 }
+
+/// A unit that sends means, whose clock is off: the increments are those of its own clock's intervals, by which the core divides
+/// them again.
+#[test]
+fn means_are_multiplied_by_the_interval_of_the_stamps() {
+    for ppm in [-500.0, -100.0, 100.0, 500.0] {
+        let mut sampler = sampler("x y z");
+        let (mut sum, mut first_ns, mut last_ns) = (0_i64, 0, 0);
+        for number in 1..=20_000_u64 {
+            let ns = 1_000_000_000 + (number as f64 * 5e6 * (1.0 + ppm * 1e-6)).round() as u64;
+            let stamp = Some(Stamp { ns, ..reading(1).stamp.unwrap() });
+            let told = Reading {
+                rotation: Some(MeasuredTriad::mean([1e-3, 0.0, 0.0])),
+                velocity: Some(MeasuredTriad::mean([0.0, 0.0, -9.8])),
+                interval_s: None,
+                sequence: None,
+                stamp,
+                ..reading(number)
+            };
+            let sample = sampler.sample(&told, None).unwrap();
+            if number == 100 {
+                first_ns = sample.device_time.ns;
+            } else if number > 100 {
+                sum += i64::from(sample.delta_velocity[2]);
+                last_ns = sample.device_time.ns;
+            }
+        }
+        let force = sum as f64 * DELTA_VELOCITY_LSB_MPS / ((last_ns - first_ns) as f64 * 1e-9);
+        // 1e-8 of 9.8 m/s^2 is a hundredth of a microgravity.
+        assert!((force + 9.8).abs() < 1e-7, "{ppm} ppm: {force}");
+        let rate = sampler.timeline().rate().unwrap();
+        assert!((rate.ppm + ppm).abs() < 0.3 + 1e-3 * ppm.abs(), "{ppm}: {rate:?}");
+        assert_eq!(sampler.counters().missing + sampler.counters().behind, 0);
+    }
+}
+
+#[test]
+fn a_late_reading_is_left_out_and_a_restart_is_told() {
+    let told = |number: u64, has_counter: bool| {
+        let stamp = Some(Stamp { ns: number * PERIOD_NS, ..reading(1).stamp.unwrap() });
+        Reading { stamp, sequence: has_counter.then_some(number), ..reading(number) }
+    };
+    for has_counter in [true, false] {
+        let mut sampler = sampler("x y z");
+        for number in 1000..1200 {
+            sampler.sample(&told(number, has_counter), None).unwrap();
+        }
+        // Late by a second, once and once more.
+        for number in [1000, 1001] {
+            assert_eq!(sampler.sample(&told(number, has_counter), None), Err(Unusable::Behind));
+        }
+        sampler.sample(&told(1200, has_counter), None).unwrap();
+        let mut restarted = (1..10).map(|number| sampler.sample(&told(number, has_counter), None));
+        assert_eq!(restarted.next(), Some(Err(Unusable::Behind)));
+        assert_eq!(restarted.next(), Some(Err(Unusable::Behind)));
+        let Some(Err(Unusable::Restarted { from_s, to_s })) = restarted.next() else { panic!() };
+        assert!((from_s - 6.0).abs() < 0.01 && (to_s - 0.015).abs() < 0.01, "{from_s} {to_s}");
+    }
+}

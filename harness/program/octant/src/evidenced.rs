@@ -270,6 +270,7 @@ impl Asked {
         let Answers { records: answers, reasons: operator } = answers;
         let day = Some(Day::of(ended));
         let choice = Choice { require: request.require, left_out, day, operator };
+        let accounts = primary.bench.inputs.clone();
         let run = assemble_with(&scenario, seed, primary, baseline, &choice)
             .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
         for (name, table) in tables {
@@ -288,6 +289,7 @@ impl Asked {
             answers,
             key,
             inputs,
+            accounts,
             equipment: scenario.equipment.clone(),
             ..RunFacts::between(started, ended)
         };

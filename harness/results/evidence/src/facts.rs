@@ -2,6 +2,7 @@
 
 use super::inputs::InputFacts;
 use super::signature::SigningKey;
+use octant_account::Account;
 use octant_operator::OperatorRecord;
 use octant_realtime::schedule::Granted;
 use octant_verdict::Verdict;
@@ -25,6 +26,8 @@ pub struct RunFacts {
     pub fmus: Vec<FmuFacts>,
     /// Recordings from which its samples came.
     pub inputs: Vec<InputFacts>,
+    /// Accounts of what came in from outside, as in the summary.
+    pub accounts: Vec<Account>,
     /// Equipment of the bench.
     pub equipment: Vec<Equipment>,
     /// Device of a run over a wire, and the traffic counts.
@@ -52,6 +55,7 @@ impl RunFacts {
             command_line: Vec::new(),
             fmus: Vec::new(),
             inputs: Vec::new(),
+            accounts: Vec::new(),
             equipment: Vec::new(),
             link: None,
             bench: None,

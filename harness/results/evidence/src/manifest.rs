@@ -8,6 +8,7 @@ pub use super::host::Machine;
 use super::files::LOCK;
 use super::files::{self, Entries, system};
 use super::inputs::InputFacts;
+use octant_account::Account;
 use octant_base::printable::printable;
 use octant_operator::{OperatorRecord, journal};
 use octant_realtime::schedule::Granted;
@@ -52,6 +53,9 @@ pub struct Manifest {
     /// Recordings from which its samples came; omitted if there were none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFacts>,
+    /// Accounts of what came in from outside, as in `summary.json`; omitted if nothing did.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub accounts: Vec<Account>,
     /// Equipment of the bench; omitted if the scenario names none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub equipment: Vec<Equipment>,
@@ -121,6 +125,7 @@ impl Manifest {
             command_line: facts.command_line.clone(),
             fmus: facts.fmus.clone(),
             inputs: facts.inputs.clone(),
+            accounts: facts.accounts.clone(),
             equipment: facts.equipment.clone(),
             link: facts.link.clone(),
             bench: facts.bench.clone(),

@@ -152,18 +152,8 @@ impl LiveSource {
 
     /// Entry of readings that came at another rate than they say, by the host's clock.
     fn pace(&self) -> AccountEntry {
-        let Some((stamped, arrived_s)) = self.clock.pace(1.0 / self.sampler.rate_hz()) else {
-            return AccountEntry::new(0, "");
-        };
-        let times = stamped / arrived_s;
-        let is_off = arrived_s >= PACED_S && (times - 1.0).abs() > PACE_TOLERANCE;
-        let kind = format!(
-            "unit whose time goes {} times as fast as the host's: {} s of it came in {} s",
-            plain(times, 3),
-            plain(stamped, 4),
-            plain(arrived_s, 4)
-        );
-        AccountEntry::new(u64::from(is_off), kind).weight(Weight::Doubt)
+        let pace = self.clock.pace(1.0 / self.sampler.rate_hz());
+        pace.map_or(AccountEntry::new(0, ""), |(own_s, arrived_s)| paced(own_s, arrived_s))
     }
 
     fn silent(&mut self) -> SourceError {
@@ -173,6 +163,19 @@ impl LiveSource {
             self.instrument.silence_s
         ))
     }
+}
+
+/// Entry of a unit whose readings cover `own_s` and arrived in `arrived_s`; counts none where the two agree.
+fn paced(own_s: f64, arrived_s: f64) -> AccountEntry {
+    let times = own_s / arrived_s;
+    let is_off = arrived_s >= PACED_S && (times - 1.0).abs() > PACE_TOLERANCE;
+    let kind = format!(
+        "unit whose time goes {} times as fast as the host's: {} s of it came in {} s",
+        plain(times, 3),
+        plain(own_s, 4),
+        plain(arrived_s, 4)
+    );
+    AccountEntry::new(u64::from(is_off), kind).weight(Weight::Doubt)
 }
 
 impl Source for LiveSource {
@@ -385,6 +388,27 @@ pub(crate) mod tests {
         assert!(
             error.contains("1 reading, 0 other frames of protocol described as kvh-1775-rate"),
             "{error}"
+        );
+    }
+
+    #[test]
+    fn a_unit_whose_time_goes_otherwise_than_the_hosts_is_a_doubt() {
+        for (own_s, arrived_s, count) in
+            [(50.0, 10.0, 1), (5.0, 10.0, 1), (10.3, 10.0, 0), (4.0, 0.1, 0)]
+        {
+            let account =
+                Account::new("udp", ["reading", "readings"]).note(paced(own_s, arrived_s));
+            assert_eq!(
+                account.doubts().len(),
+                count,
+                "{own_s} s in {arrived_s} s: {:?}",
+                account.lines()
+            );
+        }
+        let fast = Account::new("udp", ["reading", "readings"]).note(paced(50.0, 10.0));
+        assert_eq!(
+            fast.doubts(),
+            ["udp: 1 unit whose time goes 5 times as fast as the host's: 50 s of it came in 10 s"]
         );
     }
 
