@@ -277,6 +277,20 @@ impl LinesDecoder {
         None
     }
 
+    /// Ends a datagram: a line that is whole by its checksum is read, also without its end. Without checksums a piece of a
+    /// line is lost, because what comes may be no continuation of it.
+    pub fn end_of_datagram(&mut self) -> Option<FramingEvent> {
+        if !self.has_checksums() {
+            return self.end();
+        }
+        let line = trimmed(&self.held[..self.length]);
+        let form = self.description.forms().iter().find(|form| form.is_of(line))?;
+        if checked(line, form.checksum).is_err() {
+            return None;
+        }
+        self.line()
+    }
+
     /// Notes that what comes next may begin within a line, as behind a new connection.
     pub fn begin_anywhere(&mut self) {
         self.is_first = true;
