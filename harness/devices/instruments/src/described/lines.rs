@@ -4,7 +4,9 @@
 //! pass. A line without a checksum is read where its beginning and its end are known: not what comes before the first
 //! end of a line of a port, unless it begins as its form says, and not what follows the last one.
 
-use super::{FieldMeaning, FieldNumber, Gather, RecordDescriptionError};
+use super::RecordDescriptionError;
+use super::field::{FieldMeaning, FieldNumber};
+use super::gather::Gather;
 use crate::Reading;
 use crate::checksum::vectornav;
 use crate::framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
