@@ -12,7 +12,7 @@ fn a_table_with_snappy_is_read() {
     let column = |name: &str| table.column(name).unwrap().unwrap();
     let rows = 0..200_i64;
     assert_eq!(column("case"), ColumnValues::Integer(rows.clone().map(Some).collect()));
-    let nis = rows.clone().map(|row| (row % 5 != 0).then(|| 3.0 + 0.01 * (row % 7) as f64));
+    let nis = rows.clone().map(|row| (row % 5 != 0).then_some(3.0 + 0.01 * (row % 7) as f64));
     assert_eq!(column("nis"), ColumnValues::Number(nis.collect()));
     let passed = rows.clone().map(|row| Some(row % 3 != 0));
     assert_eq!(column("passed"), ColumnValues::Boolean(passed.collect()));

@@ -147,6 +147,17 @@ impl AnyDecoder {
         }
     }
 
+    /// Ends a datagram; call it until it returns `None`. A frame with a checksum may continue in the next one. Nothing tells
+    /// a frame without one that continues from one whose rest was lost: its piece is dropped. A line may end with its
+    /// datagram.
+    pub fn end_of_datagram(&mut self) -> Option<FramingEvent> {
+        match self {
+            Self::Lines(decoder) => decoder.end_of_datagram(),
+            Self::Described(decoder) if !decoder.protocol().has_checksums() => decoder.end(),
+            _ => None,
+        }
+    }
+
     /// True if every frame has a checksum, which alone tells whether pieces of a frame belong together.
     #[must_use]
     pub fn has_checksums(&self) -> bool {

@@ -6,6 +6,7 @@
 //! costs no frame after it. Its results don't depend on how the bytes were cut.
 
 use crate::Reading;
+use crate::record_defect::RecordDefect;
 use core::fmt::Debug;
 
 /// Length of the frame that begins with given bytes.
@@ -53,7 +54,7 @@ pub enum ReadingDefect {
         /// Number of the record, from 1.
         number: u64,
         /// What shows it.
-        cause: crate::described::RecordDefect,
+        cause: RecordDefect,
     },
     /// The frame is intact, but is no message of the Octant wire.
     #[error(transparent)]

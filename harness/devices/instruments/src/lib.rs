@@ -58,6 +58,7 @@ mod bytes;
 mod carry;
 mod encoding;
 mod reading;
+mod record_defect;
 mod sampler;
 #[cfg(any(feature = "dbc", feature = "descriptions"))]
 mod units;
@@ -67,6 +68,7 @@ pub use axes::{Axes, AxesError};
 pub use encoding::CannotCarry;
 pub use framing::{FramingEvent, ProtocolFacts, ReadingCounters, ReadingDefect, UnreadBytes};
 pub use reading::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
+pub use record_defect::{FoundNumber, RecordDefect};
 pub use sampler::{Sampler, SamplerCounters, SamplerSettings, Unusable};
 pub use stamp_scale::{GPS_EPOCH_S, StampScale};
 #[cfg(any(feature = "dbc", feature = "descriptions"))]

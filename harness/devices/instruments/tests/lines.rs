@@ -204,6 +204,18 @@ fn a_line_without_a_checksum_is_read_whole_alone() {
     let (readings, lost) =
         decode(&mut ready.port_decoder().unwrap(), VNIMU.trim_end().as_bytes(), 50);
     assert_eq!((readings.len(), lost.len()), (1, 0));
+    // A datagram that is a line without its end, and one whose line is continued in the next one.
+    let mut decoder = ready.port_decoder().unwrap();
+    let line = VNIMU.trim_end();
+    let mut count = 0;
+    for datagram in [line, line, &line[..40], &line[40..], VNIMU] {
+        let mut bytes = datagram.as_bytes();
+        while let Some(event) = decoder.next(&mut bytes).or_else(|| decoder.end_of_datagram()) {
+            count += usize::from(matches!(event, FramingEvent::Reading(_)));
+        }
+    }
+    assert_eq!((count, decoder.counters().readings), (4, 4));
+    assert!(decoder.counters().is_clean());
     // Each datagram a line: what ended before is no beginning of the next one.
     let mut decoder = port(&text);
     assert!(!decoder.has_checksums());

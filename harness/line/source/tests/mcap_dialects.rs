@@ -296,6 +296,28 @@ fn a_schema_that_does_not_belong_to_its_encoding_is_told() {
 }
 
 #[test]
+fn a_damaged_definition_is_an_error_or_another_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("imu.mcap");
+    for (encoding, form, text, stamp) in [
+        ("cdr", "ros2idl", IDL_IMU, ["header.stamp.sec", "header.stamp.nanosec"]),
+        ("ros1", "ros1msg", ROS1_IMU, ["header.stamp.sec", "header.stamp.nsec"]),
+    ] {
+        let mut errors = 0;
+        for at in (0..text.len()).step_by(5) {
+            for inserted in ["", "{", "}", "<", "[9]", "\"", "/*", ":", "@", "é", "999999999999"] {
+                let damaged = format!("{}{inserted}{}", &text[..at], &text[at + 1..]);
+                let schema = ("sensor_msgs/msg/Imu", form, damaged.as_str());
+                let message = if encoding == "cdr" { ros2_imu(1, "a") } else { ros1_imu(1, "a") };
+                write(&path, &[("/imu/data", encoding, Some(schema))], &[(0, 0, message)]);
+                errors += u32::from(all(&path, &mapping(stamp)).2.is_some());
+            }
+        }
+        assert!(errors > 500, "{errors}");
+    }
+}
+
+#[test]
 fn constants_enumerations_and_arrays_in_idl_have_their_sizes() {
     let text = "module p { module msg {
         const long N = 2;

@@ -2,8 +2,8 @@
 
 use crate::common::program::program;
 use octant_test_processes::{Started, start};
-use std::io::{BufRead, BufReader};
-use std::net::{SocketAddr, UdpSocket};
+use std::io::{BufRead, BufReader, Write as _};
+use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -22,6 +22,55 @@ fn capture(folder: &Path, more: &[&str]) -> (Started, SocketAddr) {
     BufReader::with_capacity(1, stderr).read_line(&mut said).unwrap();
     let address = said.trim().rsplit("udp:").next().unwrap().parse().expect(&said);
     (child, address)
+}
+
+/// A server that sends numbers to who connects, and closes the connection then.
+fn serve(server: TcpListener, count: u64) -> std::thread::JoinHandle<()> {
+    std::thread::spawn(move || send_numbers(server.accept().unwrap().0, count))
+}
+
+fn send_numbers(mut connection: TcpStream, count: u64) {
+    for k in 0..count {
+        connection.write_all(&k.to_le_bytes()).unwrap();
+    }
+}
+
+#[test]
+fn an_instrument_on_tcp_is_connected_to_or_listened_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = TcpListener::bind("127.0.0.1:0").unwrap();
+    let uri = format!("tcp:{}", server.local_addr().unwrap());
+    let served = serve(server, 500);
+    let arguments = ["capture", &uri, "--out", "served.bin"];
+    let ended = program(&arguments).current_dir(folder.path()).output().unwrap();
+    served.join().unwrap();
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(4), "{said}");
+    assert!(said.contains(&format!("octant: connected to {uri}")), "{said}");
+    assert!(said.contains("the other end closed the connection; 4000 bytes are kept in"), "{said}");
+    assert_eq!(counts(&folder.path().join("served.bin")), 500);
+    // Nobody is there any more.
+    let arguments = ["capture", &uri, "--out", "nobody.bin"];
+    let ended = program(&arguments).current_dir(folder.path()).output().unwrap();
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(said.contains(&format!("failed to open {uri}: ")), "{said}");
+    // An instrument that connects itself.
+    let arguments =
+        ["capture", "tcp:127.0.0.1:0?listen=1", "--out", "listened.bin", "--silence", "1 s"];
+    let mut child = start(
+        program(&arguments)
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped()),
+    );
+    let mut said = String::new();
+    let stderr = child.stderr.as_mut().unwrap();
+    BufReader::with_capacity(1, stderr).read_line(&mut said).unwrap();
+    let address: SocketAddr = said.trim().rsplit("tcp:").next().unwrap().parse().expect(&said);
+    assert!(said.contains("listening on"), "{said}");
+    send_numbers(TcpStream::connect(address).unwrap(), 300);
+    assert_eq!(child.output().status.code(), Some(4));
+    assert_eq!(counts(&folder.path().join("listened.bin")), 300);
 }
 
 /// Sends datagrams until the file has grown to a size.

@@ -1,20 +1,9 @@
 //! A reading from the fields of a frame, a record or a line.
 
-use super::FieldMeaning;
+use super::field::{FieldMeaning, FieldNumber};
 use crate::rollover::Rollover;
 use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
-
-/// Number in a field.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FieldNumber {
-    /// Value.
-    pub(super) value: f64,
-    /// Bits of an integer, without its sign; of a stamp that is no integer, its time in ns.
-    pub(super) raw: u64,
-    /// True for an integer.
-    pub(super) is_integer: bool,
-}
 
 /// Puts a reading together.
 pub(super) struct Gather<'a> {

@@ -4,7 +4,9 @@
 //! pass. A line without a checksum is read where its beginning and its end are known: not what comes before the first
 //! end of a line of a port, unless it begins as its form says, and not what follows the last one.
 
-use super::{FieldMeaning, FieldNumber, Gather, RecordDescriptionError};
+use super::RecordDescriptionError;
+use super::field::{FieldMeaning, FieldNumber};
+use super::gather::Gather;
 use crate::Reading;
 use crate::checksum::vectornav;
 use crate::framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
@@ -275,6 +277,20 @@ impl LinesDecoder {
         self.counters.bytes_lost += self.length as u64;
         (self.length, self.is_first) = (0, true);
         None
+    }
+
+    /// Ends a datagram: a line that is whole by its checksum is read, also without its end. Without checksums a piece of a
+    /// line is lost, because what comes may be no continuation of it.
+    pub fn end_of_datagram(&mut self) -> Option<FramingEvent> {
+        if !self.has_checksums() {
+            return self.end();
+        }
+        let line = trimmed(&self.held[..self.length]);
+        let form = self.description.forms().iter().find(|form| form.is_of(line))?;
+        if checked(line, form.checksum).is_err() {
+            return None;
+        }
+        self.line()
     }
 
     /// Notes that what comes next may begin within a line, as behind a new connection.

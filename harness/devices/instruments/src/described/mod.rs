@@ -12,23 +12,25 @@
 //! has lines of text.
 
 mod check;
+mod field;
 mod gather;
 mod lines;
 mod number;
 mod records;
 
 pub use check::{ChecksumKind, CrcParameters, DescribedCrc, FrameChecksum};
+pub use field::{FieldMeaning, FrameField};
 pub use lines::{
     BEGINS_BYTES_MAX, LINE_BYTES_MAX, LINE_FIELDS_MAX, LINES_MAX, LineChecksum, LineDescription,
     LineField, LineForm, LineSeparator, LinesDecoder,
 };
 pub use number::{ByteOrder, FrameNumber, NumberType};
-pub use records::{FixedRecords, FoundNumber, RECORD_FIELDS_MAX, RecordDefect, RecordsDecoder};
+pub use records::{FixedRecords, RECORD_FIELDS_MAX, RecordsDecoder};
 
+use crate::Reading;
 use crate::framing::{Extent, FrameDecoder, Framing, ReadingDefect};
 use crate::rollover::Rollover;
-use crate::{Reading, ReadingKind};
-use gather::{FieldNumber, Gather};
+use gather::Gather;
 
 /// Most bytes of a frame.
 pub const FRAME_BYTES_MAX: usize = 1024;
@@ -38,97 +40,6 @@ pub const SYNC_BYTES_MAX: usize = 8;
 pub const FRAMES_MAX: usize = 32;
 /// Most fields of all frames of a description together.
 pub const FIELDS_MAX: usize = 384;
-
-/// Meaning of a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FieldMeaning {
-    /// Rotation about axis x, y or z (0, 1, 2): rad or rad/s = (raw − zero) · scale.
-    Rotation {
-        /// Axis.
-        axis: usize,
-        /// Increment or mean.
-        kind: ReadingKind,
-        /// Raw number of zero.
-        zero: f64,
-        /// SI units of one raw unit; negative reverses the axis.
-        scale: f64,
-    },
-    /// Velocity or specific force along axis x, y or z: m/s or m/s², likewise.
-    Velocity {
-        /// Axis.
-        axis: usize,
-        /// Increment or mean.
-        kind: ReadingKind,
-        /// Raw number of zero.
-        zero: f64,
-        /// SI units of one raw unit; negative reverses the axis.
-        scale: f64,
-    },
-    /// Number of the reading, which rolls over.
-    Counter,
-    /// Time of the unit at the end of the interval, which rolls over; a raw unit is this many ns.
-    Stamp(f64),
-    /// Temperature, °C = (raw − zero) · scale + offset.
-    Temperature {
-        /// Raw number of zero.
-        zero: f64,
-        /// Kelvins of one raw unit.
-        scale: f64,
-        /// Temperature at zero, °C.
-        offset_c: f64,
-    },
-    /// Bits of a status word.
-    Flags {
-        /// Bits of which each is set in a reading that is valid.
-        good: u64,
-        /// Bits of which none is set in a reading that is valid.
-        faulty: u64,
-        /// Bits of which one is set where a gyro is saturated.
-        gyro_saturated: u64,
-        /// Bits of which one is set where an accelerometer is saturated.
-        accel_saturated: u64,
-    },
-}
-
-/// A field of a frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameField {
-    /// Place and type.
-    pub number: FrameNumber,
-    /// Meaning.
-    pub meaning: FieldMeaning,
-}
-
-impl FrameField {
-    #[inline]
-    fn number(&self, bytes: &[u8]) -> FieldNumber {
-        let value = self.number.value(bytes);
-        let is_integer = self.number.number.is_integer();
-        let raw = match self.meaning {
-            FieldMeaning::Stamp(size_ns) if !is_integer => libm::round(value * size_ns) as u64,
-            _ => self.number.raw(bytes),
-        };
-        FieldNumber { value, raw, is_integer }
-    }
-}
-
-impl FieldMeaning {
-    /// Name of the field in messages.
-    pub(crate) const fn name(&self) -> &'static str {
-        match self {
-            Self::Rotation { axis: 0, .. } => "gyro x",
-            Self::Rotation { axis: 1, .. } => "gyro y",
-            Self::Rotation { .. } => "gyro z",
-            Self::Velocity { axis: 0, .. } => "accel x",
-            Self::Velocity { axis: 1, .. } => "accel y",
-            Self::Velocity { .. } => "accel z",
-            Self::Counter => "counter",
-            Self::Stamp(_) => "stamp",
-            Self::Temperature { .. } => "temperature",
-            Self::Flags { .. } => "status",
-        }
-    }
-}
 
 /// A frame.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Lines of text.
 
 use super::fields::{Places, ReadField, fields};
-use super::read::{Ranges, is_whole};
+use super::ranges::{Ranges, is_whole};
 use super::table::{DescriptionProblem, Table};
 use crate::described::{
     BEGINS_BYTES_MAX, LINE_BYTES_MAX, LineChecksum, LineDescription, LineField, LineForm,

@@ -22,17 +22,18 @@
 
 mod checksum;
 mod fields;
+mod form;
 mod lines;
+mod ranges;
 mod read;
 mod record;
 mod table;
 
 use crate::AnyDecoder;
-use crate::described::{
-    Described, DescribedDecoder, FixedRecords, LineDescription, LinesDecoder, RecordDescription,
-    RecordsDecoder,
-};
+use crate::described::{Described, DescribedDecoder, LinesDecoder, RecordsDecoder};
 use std::string::String;
+
+pub use form::UnitForm;
 
 pub use table::{DescriptionProblem, VERSION};
 
@@ -43,18 +44,6 @@ pub struct UnitDescription {
     pub name: String,
     /// What it sends.
     pub form: UnitForm,
-}
-
-/// Form of what a unit sends.
-#[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there is one for each port or file")]
-pub enum UnitForm {
-    /// Frames with bytes that they begin with.
-    Frames(RecordDescription),
-    /// Records of one length, in a file.
-    Records(FixedRecords),
-    /// Lines of text.
-    Lines(LineDescription),
 }
 
 impl UnitDescription {

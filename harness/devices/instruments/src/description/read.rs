@@ -1,16 +1,16 @@
 //! A description from its text.
 
-use super::UnitForm;
 use super::checksum::checksum;
 use super::fields::{ORDERS, Places, ReadField, fields};
+use super::form::UnitForm;
 use super::lines::lines;
+use super::ranges::{Ranges, is_whole};
 use super::record::record;
 use super::table::{DescriptionProblem, Table, Text, VERSION};
 use crate::described::{
-    ByteOrder, FRAME_BYTES_MAX, FieldMeaning, FrameChecksum, FrameDescription, FrameField,
-    RecordDescription, SYNC_BYTES_MAX,
+    ByteOrder, FRAME_BYTES_MAX, FrameChecksum, FrameDescription, FrameField, RecordDescription,
+    SYNC_BYTES_MAX,
 };
-use crate::rollover::Rollover;
 use std::borrow::ToOwned;
 use std::format;
 use std::string::{String, ToString as _};
@@ -106,71 +106,6 @@ fn frames(root: &Table<'_>, version: i64) -> Result<RecordDescription, Descripti
         .collect();
     RecordDescription::new(&views, ranges.counter(), ranges.stamp())
         .map_err(|error| root.problem("frame", error.to_string()))
-}
-
-/// True if the fields are gyros and accelerometers.
-pub(super) fn is_whole<'a>(mut meanings: impl Iterator<Item = &'a FieldMeaning> + Clone) -> bool {
-    let has_gyros =
-        meanings.clone().any(|meaning| matches!(meaning, FieldMeaning::Rotation { .. }));
-    has_gyros && meanings.any(|meaning| matches!(meaning, FieldMeaning::Velocity { .. }))
-}
-
-/// Ranges of counter and clock, which are the same in all frames.
-#[derive(Default)]
-pub(super) struct Ranges {
-    counter: Option<Option<u64>>,
-    stamp: Option<Option<u64>>,
-    /// Whether the stamp is an integer.
-    integer_stamp: Option<bool>,
-}
-
-impl Ranges {
-    pub(super) fn counter(&self) -> Rollover {
-        rollover(self.counter)
-    }
-
-    pub(super) fn stamp(&self) -> Rollover {
-        rollover(self.stamp)
-    }
-
-    /// Notes the range of a field, which is that of the same field of every frame before it.
-    pub(super) fn take(
-        &mut self,
-        table: &Table<'_>,
-        read: &ReadField,
-    ) -> Result<(), DescriptionProblem> {
-        if let FieldMeaning::Stamp(_) = read.meaning {
-            let is_integer = read.is_integer();
-            if self.integer_stamp.is_some_and(|known| known != is_integer) {
-                let message = "found stamps of integers and of floating-point numbers, expected one of both in all frames";
-                return Err(table.problem("field", message));
-            }
-            self.integer_stamp = Some(is_integer);
-        }
-        let (known, what) = match read.meaning {
-            FieldMeaning::Counter => (&mut self.counter, "counter"),
-            FieldMeaning::Stamp(_) => (&mut self.stamp, "stamp"),
-            _ => return Ok(()),
-        };
-        if known.is_some_and(|known| known != read.modulo) {
-            let range = |modulo: Option<u64>| modulo.map_or("2^64".to_owned(), |m| m.to_string());
-            let message = format!(
-                "the {what} has {} values, expected {} as in the frames before it",
-                range(read.modulo),
-                range(known.flatten())
-            );
-            return Err(table.problem("field", message));
-        }
-        *known = Some(read.modulo);
-        Ok(())
-    }
-}
-
-fn rollover(range: Option<Option<u64>>) -> Rollover {
-    match range {
-        Some(Some(modulo)) => Rollover::modulo(modulo),
-        Some(None) | None => Rollover::new(64),
-    }
 }
 
 /// What holds for all frames.

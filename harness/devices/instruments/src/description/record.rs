@@ -2,7 +2,7 @@
 
 use super::checksum::checksum;
 use super::fields::{ORDERS, Places, ReadField, fields};
-use super::read::{Ranges, is_whole};
+use super::ranges::{Ranges, is_whole};
 use super::table::{DescriptionProblem, Table};
 use crate::described::{FRAME_BYTES_MAX, FixedRecords, FrameField};
 use std::string::ToString as _;

@@ -239,12 +239,8 @@ impl Line {
             let mut bytes = &self.buffer[self.rest.clone()];
             let event = self.decoder.next(&mut bytes);
             self.rest.start = self.rest.end - bytes.len();
-            // Nothing tells a frame without a checksum that continues in the next datagram from one whose rest was
-            // lost: the next datagram would be read as its rest.
             let event = match event {
-                None if self.port.datagrams() && !self.decoder.has_checksums() => {
-                    self.decoder.end()
-                }
+                None if self.port.datagrams() => self.decoder.end_of_datagram(),
                 event => event,
             };
             if let Some(reading) = self.taken(event?) {
