@@ -210,6 +210,10 @@ impl Points for MessageReader {
         self.heard_ns
     }
 
+    fn looks_ahead(&self) -> bool {
+        true
+    }
+
     fn tally(&self) -> &Tally {
         &self.tally
     }

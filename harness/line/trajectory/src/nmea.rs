@@ -325,6 +325,10 @@ impl Points for NmeaReader {
         self.heard_ns
     }
 
+    fn looks_ahead(&self) -> bool {
+        true
+    }
+
     fn choices(&self) -> Vec<&'static str> {
         let leads = "each VTG goes to the position after it: its velocities fit the change of position there, not before it";
         self.velocity_leads.then_some(leads).into_iter().collect()

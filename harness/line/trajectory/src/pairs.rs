@@ -108,6 +108,8 @@ pub struct SolutionPairs {
     comparison: Comparison,
     /// Points of the solution that are scored, and left out for a reason.
     points: Tally,
+    /// Units that the file left out up to the present point, all and for each reason.
+    of_file: (u64, Vec<(&'static str, u64)>),
     gaps: GapList,
     scored: Option<Scored>,
     of_reference: TrajectorySurvey,
@@ -221,6 +223,7 @@ impl SolutionPairs {
             identical: [true; 3],
             comparison: Comparison::default(),
             points: Tally::default(),
+            of_file: (0, Vec::new()),
             scored: None,
             of_reference: reference,
             apart,
@@ -247,7 +250,7 @@ impl SolutionPairs {
     /// # Errors
     /// If a file is damaged, or no point has a reference.
     pub fn next_pair(&mut self) -> Result<Option<SolutionPair>, PairsError> {
-        while let Some(point) = self.solution.next()? {
+        while let Some(point) = self.next_point()? {
             let lacks = (self.survey.velocity && point.velocity_mps.is_none())
                 || (self.survey.attitude && point.attitude_rad.is_none());
             let reason = if point.time_ns < self.from_ns {
@@ -308,11 +311,34 @@ impl SolutionPairs {
         Ok(None)
     }
 
+    /// Returns the next point of the solution, with the counts of what the file left out up to it.
+    fn next_point(&mut self) -> Result<Option<TrajectoryPoint>, TrajectoryError> {
+        let ahead = self.solution.looks_ahead();
+        if ahead {
+            self.count_file();
+        }
+        let point = self.solution.next()?;
+        if !ahead {
+            self.count_file();
+        }
+        Ok(point)
+    }
+
+    fn count_file(&mut self) {
+        let tally = self.solution.tally();
+        let (count, reasons) = &mut self.of_file;
+        if *count != tally.left_out_count() {
+            *count = tally.left_out_count();
+            reasons.clear();
+            reasons.extend(tally.reasons());
+        }
+    }
+
     /// Takes the time of a point that is scored, for the gaps.
     fn step(&mut self, now_ns: i64) {
-        let of_file = self.solution.tally();
-        let left_out = self.points.left_out_count() + of_file.left_out_count();
-        let reasons = || self.points.reasons().chain(of_file.reasons());
+        let (of_file_count, of_file) = &self.of_file;
+        let left_out = self.points.left_out_count() + of_file_count;
+        let reasons = || self.points.reasons().chain(of_file.iter().copied());
         let Some(Scored { last_ns, left_out_then, reasons_then }) = &mut self.scored else {
             let reasons_then = reasons().collect();
             self.scored = Some(Scored { last_ns: now_ns, left_out_then: left_out, reasons_then });

@@ -150,6 +150,10 @@ pub(crate) trait Points: Send {
     fn heard_ns(&self) -> Option<i64> {
         None
     }
+    /// True if a point is given once the next one has begun: what was left out between both is counted by then.
+    fn looks_ahead(&self) -> bool {
+        false
+    }
     /// Choices that were made in reading the file, in words that follow its name.
     fn choices(&self) -> Vec<&'static str> {
         Vec::new()

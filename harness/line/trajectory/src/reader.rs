@@ -82,6 +82,11 @@ impl TrajectoryReader {
         self.points.choices()
     }
 
+    /// True if a point is given once the next one has begun.
+    pub(crate) fn looks_ahead(&self) -> bool {
+        self.points.looks_ahead()
+    }
+
     /// Counts of what became of the units read so far.
     pub(crate) fn tally(&self) -> &Tally {
         self.points.tally()

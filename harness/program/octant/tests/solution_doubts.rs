@@ -194,6 +194,30 @@ fn a_talker_is_chosen_by_its_letters() {
     assert!(said.contains("left out: 600 sentences of other talkers"), "{said}");
     let (status, said) = call(&["--talker", "IN"]);
     assert_eq!(status, Some(1), "{said}");
+    // Invalid fixes and damage are gaps with their causes.
+    let whole = std::fs::read_to_string(here.join("two.nmea")).unwrap();
+    let part = |line: &str| {
+        let position = line.starts_with("$GPGGA");
+        let second = (position && line.contains(",1203")) || line.contains("GPGGA,120500");
+        if !second {
+            return format!("{line}\r\n");
+        }
+        match line.contains(",1203") {
+            true => sentence(&line[1..line.len() - 3].replace(",E,1,8", ",E,0,8")),
+            false => format!("{}00\r\n", &line[..line.len() - 2]),
+        }
+    };
+    std::fs::write(here.join("two.nmea"), whole.lines().map(part).collect::<String>()).unwrap();
+    let (status, said) = call(&["--talker", "GP"]);
+    assert_eq!(status, Some(3), "{said}");
+    for words in [
+        "60 points in a gap of 61 s from 179 s (before line",
+        "60 sentences without a valid fix",
+        "1 point in a gap of 2 s from 299 s (before line",
+        "1 sentences with a wrong checksum",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
     let (status, said) = call(&["--talker", "GPS receiver"]);
     assert!(status == Some(2) && said.contains("expected the letters of a talker"), "{said}");
     std::fs::write(here.join("ins.csv"), rows(seconds(0, 600), drifting, 0.0)).unwrap();

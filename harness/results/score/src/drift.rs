@@ -303,7 +303,7 @@ impl DriftScorer {
                 };
                 scores[error] = extent(name, &self.extents[error]).filter(|_| scored);
             }
-            gaps.score(scores, duration_s)
+            gaps.score(scores, duration_s, &self.marks)
         });
         Ok(NavigationScore {
             gaps: gaps.map(Box::new),

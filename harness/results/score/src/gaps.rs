@@ -19,9 +19,9 @@
 //! A unit that is silent for longer may have been reset, or aligned again, and its errors then are not what the ends
 //! show: such a gap has no bound.
 
+use super::navigation::{GapScore, Mark};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
@@ -40,20 +40,6 @@ const LEVELS_MAX: usize = 17;
 /// Seven errors with a sign, in the order of the scorer, and the radial one.
 pub(super) const ERRORS: usize = 8;
 const RADIAL: usize = 7;
-
-/// What gaps leave open of a navigation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GapScore {
-    /// Number of gaps.
-    pub count: u64,
-    /// Their whole length, s.
-    pub total_s: f64,
-    /// The longest one: its beginning and its length, s.
-    pub longest_s: [f64; 2],
-    /// Largest value that a score may have with them, by its path below `navigation`; null: nothing bounds it. Scores that gaps
-    /// don't change are left out.
-    pub bounds: BTreeMap<String, Option<f64>>,
-}
 
 /// Gaps of about one length.
 #[derive(Clone, Copy, Debug, Default)]
@@ -260,6 +246,7 @@ impl GapBridge {
         &self,
         scores: [Option<(&str, f64, f64)>; ERRORS],
         duration_s: f64,
+        marks: &BTreeMap<String, Mark>,
     ) -> Option<GapScore> {
         if self.count == 0 {
             return None;
@@ -274,14 +261,18 @@ impl GapBridge {
                 self.square_integral(error).map(|more| libm::sqrt(rms * rms + more / duration_s));
             bounds.insert(format!("{name}.rms"), rms);
         }
-        for (mark, levels, open, within) in &self.marks {
-            for (error, name, unit) in
-                [(0, "latitude", "arcmin"), (1, "longitude", "arcmin"), (RADIAL, "radial", "nmi")]
-            {
+        for (name, levels, open, within) in &self.marks {
+            let Some(mark) = marks.get(name) else { continue };
+            for (error, of, unit, largest, at) in [
+                (0, "latitude", "arcmin", mark.latitude_max_arcmin, mark.latitude_arcmin),
+                (1, "longitude", "arcmin", mark.longitude_max_arcmin, mark.longitude_arcmin),
+                (RADIAL, "radial", "nmi", mark.radial_max_nmi, mark.radial_nmi),
+            ] {
                 let Some(bound) = self.largest(levels, *open, error) else { continue };
-                bounds.insert(format!("marks.{mark}.{name}_max_{unit}"), bound);
+                let with = |value: f64| bound.map(|bound| bound.max(value.abs()));
+                bounds.insert(format!("marks.{name}.{of}_max_{unit}"), with(largest));
                 if *within {
-                    bounds.insert(format!("marks.{mark}.{name}_{unit}"), bound);
+                    bounds.insert(format!("marks.{name}.{of}_{unit}"), with(at));
                 }
             }
         }

@@ -1,6 +1,5 @@
 //! Results of navigation.
 
-use super::gaps::GapScore;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -131,4 +130,18 @@ pub struct Mark {
     pub longitude_max_arcmin: f64,
     /// Largest radial error up to the mark, nmi.
     pub radial_max_nmi: f64,
+}
+
+/// What gaps leave open of a navigation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GapScore {
+    /// Number of gaps.
+    pub count: u64,
+    /// Their whole length, s.
+    pub total_s: f64,
+    /// The longest one: its beginning and its length, s.
+    pub longest_s: [f64; 2],
+    /// Largest value that a score may have with them, by its path below `navigation`; null: nothing bounds it. Scores that gaps
+    /// don't change are left out.
+    pub bounds: BTreeMap<String, Option<f64>>,
 }

@@ -5,9 +5,8 @@
 pub use super::alignment::{AlignmentReference, AlignmentResult, PointScore, SolutionScore};
 pub use super::allan::{AllanDeviation, AxisAllan, NoiseTermScore, SensorAllan};
 pub use super::calibration::{CalibrationScore, HealthCounts, ParameterScore};
-pub use super::gaps::GapScore;
 pub use super::navigation::{
-    ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
+    ErrorScore, GapScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
 };
 
 pub use octant_recorder::event::{
