@@ -3,6 +3,7 @@
 
 mod logs;
 mod mcap;
+mod references;
 mod rest;
 mod solutions;
 mod table;

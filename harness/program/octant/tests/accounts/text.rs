@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 const FILE: &str = "unit.csv";
 const HEADER: &str = "t,gx,gy,gz,ax,ay,az\n";
-const SOURCE: &str = "uri = \"text:unit.csv\"
+pub const SOURCE: &str = "uri = \"text:unit.csv\"
 [source.text]
 header = true
 delimiter = \"comma\"
@@ -44,7 +44,7 @@ fn untimed() -> String {
 const UNSETTLED: u64 = 11;
 
 /// Rows with stamps in s.
-fn csv(rows: &[Rest]) -> String {
+pub fn csv(rows: &[Rest]) -> String {
     stamped(rows, |row| format!("{:.9}", row.time_s))
 }
 
