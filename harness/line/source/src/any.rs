@@ -135,7 +135,11 @@ impl Source for AnySource {
     }
 
     fn accounts(&self) -> Vec<Account> {
-        each!(&self.kind, source => source.accounts())
+        let mut accounts = each!(&self.kind, source => source.accounts());
+        if let Some(AddedReference::Measured(measured)) = &self.reference {
+            accounts.push(measured.account());
+        }
+        accounts
     }
 
     fn compared(&self) -> Option<&Comparison> {

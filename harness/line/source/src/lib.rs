@@ -49,6 +49,9 @@ use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 use octant_trajectory::Comparison;
 
+/// End of the name of a measured reference's account.
+pub const OF_REFERENCE: &str = ", reference";
+
 /// A source of epochs.
 pub trait Source {
     /// Writes the next epoch into `epoch`. Returns `false` when the source has ended; `epoch` is

@@ -4,9 +4,10 @@
 //! interpolated: a value between two measurements has the noise of both and tells the filter nothing new, and a value
 //! between two samples is off by no more than the acceleration times half a sample period.
 
-use super::SourceError;
 use super::reference_mcap::ReferenceMcap;
 use super::reference_text::ReferenceText;
+use super::{OF_REFERENCE, SourceError};
+use octant_account::{Account, AccountEntry};
 use octant_base::number::plain;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_sample::{Aiding, DeviceTime, Reference};
@@ -43,6 +44,14 @@ impl ReferenceRows {
             Self::Mcap(rows) => rows.error_of_file(reason),
         }
     }
+
+    /// File, name of its units, and number of those so far that have no measurement.
+    fn facts(&self) -> (&str, [&'static str; 2], u64) {
+        match self {
+            Self::Text(rows) => (rows.path(), ["row", "rows"], rows.empty()),
+            Self::Mcap(rows) => (rows.path(), ["message", "messages"], 0),
+        }
+    }
 }
 
 /// A reference with its stamp, ns.
@@ -63,7 +72,13 @@ pub(super) struct MeasuredReference {
     last: Option<Stamped>,
     waits: bool,
     first_ns: Option<u64>,
-    given: bool,
+    /// Number of measurements that went to a sample, that repeat the one before, and that have no sample.
+    given: u64,
+    repeated: u64,
+    apart: u64,
+    /// Stamp of the first that has none.
+    first_apart_ns: Option<u64>,
+    has_ended: bool,
     /// Stamps of the first and the last sample.
     samples_ns: Option<(u64, u64)>,
 }
@@ -81,7 +96,11 @@ impl MeasuredReference {
             last: None,
             waits: false,
             first_ns: None,
-            given: false,
+            given: 0,
+            repeated: 0,
+            apart: 0,
+            first_apart_ns: None,
+            has_ended: false,
             samples_ns: None,
         }
     }
@@ -100,16 +119,18 @@ impl MeasuredReference {
             }
             self.waits = false;
             if next.time_ns.saturating_add(self.slack_ns) >= stamp.ns {
-                self.given = true;
+                self.given += 1;
                 return Ok(Some(Aiding { device_time: stamp, reference: next.reference }));
             }
             // It is of a time before the samples, or of a gap in them.
+            self.apart += 1;
+            self.first_apart_ns.get_or_insert(next.time_ns);
         }
     }
 
     /// Checks, at the end of the samples, that there was a reference at all.
     pub(super) fn came(&self) -> Result<(), SourceError> {
-        let Some((from_ns, to_ns)) = self.samples_ns.filter(|_| !self.given) else {
+        let Some((from_ns, to_ns)) = self.samples_ns.filter(|_| self.given == 0) else {
             return Ok(());
         };
         let s = |ns: u64| format!("{:.3}", ns as f64 * 1e-9);
@@ -131,13 +152,42 @@ impl MeasuredReference {
         )))
     }
 
+    /// Returns the account of what was read so far.
+    pub(super) fn account(&self) -> Account {
+        let (path, unit, empty) = self.rows.facts();
+        let first_s = self.first_apart_ns.map_or(f64::NAN, |ns| ns as f64 * 1e-9);
+        let apart = AccountEntry::new(
+            self.apart,
+            "measurements of a time before the samples, or in a gap of them",
+        )
+        .first(format!("at {} s", plain(first_s, 9)));
+        let rest = AccountEntry::new(
+            u64::from(!self.has_ended),
+            "end of the run before the end of the file: the rest is not read",
+        );
+        Account::new(format!("{path}{OF_REFERENCE}"), unit)
+            .used(self.given)
+            .left_out(AccountEntry::new(empty, "rows without a measurement"))
+            .left_out(AccountEntry::new(self.repeated, "repetitions of the measurement before"))
+            .left_out(apart)
+            .left_out(AccountEntry::new(
+                u64::from(self.waits),
+                "measurement behind the last sample",
+            ))
+            .note(rest)
+    }
+
     /// Reads the next reference; `false` at the end.
     fn read(&mut self) -> Result<bool, SourceError> {
         loop {
-            let Some((time_ns, raw)) = self.rows.next()? else { return Ok(false) };
+            let Some((time_ns, raw)) = self.rows.next()? else {
+                self.has_ended = true;
+                return Ok(false);
+            };
             if let Some(last) = &self.last {
                 if time_ns == last.time_ns && raw.map(f64::to_bits) == last.raw.map(f64::to_bits) {
                     // A logger repeats the last measurement until there is another one.
+                    self.repeated += 1;
                     continue;
                 }
                 self.check_times(last.time_ns, time_ns)?;

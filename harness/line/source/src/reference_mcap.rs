@@ -42,6 +42,11 @@ impl ReferenceMcap {
         Ok(Some((message.time_ns, values)))
     }
 
+    /// The file.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
     /// Makes an error of the last message.
     pub(super) fn error(&self, reason: String) -> SourceError {
         self.error_of_file(self.messages.in_message(&reason))

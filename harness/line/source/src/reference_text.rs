@@ -14,8 +14,9 @@ pub(super) struct ReferenceText {
     names: [&'static str; 3],
     time: Option<(usize, TimeUnit)>,
     row_period_ns: u64,
-    /// Rows so far, with and without a reference.
+    /// Rows so far, with and without a reference, and those without.
     count: u64,
+    empty: u64,
 }
 
 impl ReferenceText {
@@ -33,7 +34,15 @@ impl ReferenceText {
             Some(time) => Some((rows.column(&time.column)?, time.unit)),
             None => None,
         };
-        Ok(Self { rows, columns, names, time, row_period_ns: reference.row_period_ns, count: 0 })
+        Ok(Self {
+            rows,
+            columns,
+            names,
+            time,
+            row_period_ns: reference.row_period_ns,
+            count: 0,
+            empty: 0,
+        })
     }
 
     /// Returns stamp, ns, and numbers of the next reference; `None` at the end. Rows whose three
@@ -46,6 +55,7 @@ impl ReferenceText {
                 *empty = self.rows.field(index)?.is_empty();
             }
             if empty == [true; 3] {
+                self.empty += 1;
                 continue;
             }
             if let Some(missing) = empty.iter().position(|empty| *empty) {
@@ -68,6 +78,16 @@ impl ReferenceText {
             return Ok(Some((stamp_ns, values)));
         }
         Ok(None)
+    }
+
+    /// The file.
+    pub(super) fn path(&self) -> &str {
+        self.rows.path()
+    }
+
+    /// Number of rows so far without a reference.
+    pub(super) const fn empty(&self) -> u64 {
+        self.empty
     }
 
     /// Makes an error of the last row.

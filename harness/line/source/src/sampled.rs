@@ -25,7 +25,7 @@ pub(super) fn account(
     .first(format!("reading {}", tally.first_shifted));
     let behind = AccountEntry::new(counters.behind, "readings that are there twice, or late");
     let missing = AccountEntry::new(
-        counters.missing,
+        tally.missing,
         format!(
             "readings in {}, the longest {} s",
             counted(tally.gaps, "gap", "gaps"),

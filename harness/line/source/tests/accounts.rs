@@ -123,7 +123,7 @@ fn rows_of_damaged_text() {
             let mut text = String::new();
             for Unit { stamp_ns, .. } in units {
                 if random.once_in(30) {
-                    text += ["\n", "# a comment\n", "   \r\n"][random.below(3) as usize];
+                    text += ["\n", "# a comment\n", "\r\n"][random.below(3) as usize];
                 }
                 writeln!(text, "{stamp_ns},1e-3,0,0,0,0,9.8").unwrap();
             }
@@ -234,7 +234,7 @@ fn readings_of_damaged_logs() {
                 ..Reading::NOTHING
             });
             let torn = reading.unwrap();
-            bytes.extend(&torn[..random.below(torn.len() as u64) as usize]);
+            bytes.extend(&torn[..random.below(torn.len() as u64 / 2) as usize]);
             std::fs::write(path, bytes).unwrap();
             let log = InstrumentLog {
                 file: FileName("unit.bin".to_owned()),

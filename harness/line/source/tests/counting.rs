@@ -167,7 +167,7 @@ fn what_becomes_of_each_row_is_in_the_account() {
             "left out: 1 rows that are there twice, the first in line 500000000",
             "missing: 20 rows in 1 gap, the longest 0.1 s, the first before line 1100000000, after the one of 0.995 s; \
              the core bridges it",
-            "clock: 200.000764 Hz, +3.822 ± 8.9 ppm from the configured 200 Hz; stamps scatter by 0.103 ms (1 sigma), 2 ms at most; \
+            "clock: 200.000751 Hz, +3.754 ± 8.9 ppm from the configured 200 Hz; stamps scatter by 0.103 ms (1 sigma), 2 ms at most; \
              no clock outside shows the error of this one",
         ]
     );

@@ -19,6 +19,7 @@ mod sentence;
 use self::sentence::{Said, Sentence, Talker, UNSUMMED};
 use super::point::{LINE_BYTES_MAX, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint};
 use super::tally::{OUT_OF_ORDER, Tally};
+use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::trajectory::NmeaChoice;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
@@ -391,22 +392,45 @@ fn velocity_leads(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<bool, St
         let ((from_ns, from), (to_ns, to)) =
             (points.get(point.checked_sub(1)?)?, points.get(point + 1)?);
         let elapsed_s = (to_ns - from_ns) as f64 / SECOND_NS as f64;
-        let north_mps = (to[0] - from[0]) * EARTH_RADIUS_M / elapsed_s;
-        let east_mps = (to[1] - from[1]) * libm::cos(from[0]) * EARTH_RADIUS_M / elapsed_s;
+        let earth = Ellipsoid::at(from[0], 0.0);
+        let across_m = earth.transverse_radius_m * earth.cos_latitude;
+        let north_mps = (to[0] - from[0]) * earth.meridian_radius_m / elapsed_s;
+        let east_mps = (to[1] - from[1]) * across_m / elapsed_s;
         (elapsed_s > 0.0).then_some([north_mps, east_mps])
     };
-    let (mut before, mut after, mut compared) = (0.0, 0.0, 0);
+    let (mut before, mut after) = (Spread::default(), Spread::default());
     for (points_before, velocity) in &velocities {
         let Some(last) = points_before.checked_sub(1) else { continue };
         let (Some(of_last), Some(of_next)) = (moved(last), moved(last + 1)) else { continue };
-        let off = |moved: [f64; 2]| {
-            let [north, east] = [0, 1].map(|axis| velocity[axis] - moved[axis]);
-            north * north + east * east
-        };
-        (before, after, compared) = (before + off(of_last), after + off(of_next), compared + 1);
+        let off = |moved: [f64; 2]| [0, 1].map(|axis| velocity[axis] - moved[axis]);
+        before.add(off(of_last));
+        after.add(off(of_next));
     }
     // Without a change of velocity the two say the same.
-    Ok(compared >= VELOCITIES_LEAST && after < 0.5 * before)
+    Ok(before.count >= VELOCITIES_LEAST && after.square() < 0.5 * before.square())
+}
+
+/// Squares of differences about their mean: a constant error of the velocities says nothing of their time.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread {
+    count: u32,
+    sum: [f64; 2],
+    squares: f64,
+}
+
+impl Spread {
+    fn add(&mut self, off: [f64; 2]) {
+        self.count += 1;
+        for (sum, off) in self.sum.iter_mut().zip(off) {
+            *sum += off;
+            self.squares += off * off;
+        }
+    }
+
+    fn square(&self) -> f64 {
+        let [north, east] = self.sum;
+        self.squares - (north * north + east * east) / f64::from(self.count.max(1))
+    }
 }
 
 struct NmeaLines {

@@ -288,16 +288,13 @@ impl Timeline {
         if stamp.is_some() && counter.is_none() && ahead.spacing_ns(time_ns).is_none() {
             line.settle(ahead.stamps());
         }
+        let mut regression = Regression::default();
+        if let Some(now) = stamp {
+            regression.add(0.0, now, line.origin_ns(), self.nominal_ns);
+        }
         let time_ns = line.time_ns();
-        self.state = Some(State {
-            line,
-            regression: Regression::default(),
-            stamp,
-            counter,
-            number: 0,
-            time_ns,
-            strays: (0, 0),
-        });
+        self.state =
+            Some(State { line, regression, stamp, counter, number: 0, time_ns, strays: (0, 0) });
         self.tally.placed += 1;
         Placed { number: 0, missing: 0, time_ns, interval_ns }
     }

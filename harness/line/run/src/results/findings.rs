@@ -15,6 +15,7 @@ use octant_scenario::{CalibrationSpec, Method, Realtime, Scenario};
 use octant_score::judge::Finding;
 use octant_score::summary::PacingRecord;
 use octant_score::work::{RunPart, duration};
+use octant_source::OF_REFERENCE;
 use octant_verdict::Verdict;
 
 /// Lists the findings that affect the verdict of a run of one or two methods.
@@ -75,15 +76,21 @@ fn of_bench(scenario: &Scenario, run: &MethodRun, place: &str) -> Vec<Finding> {
     reasons.into_iter().map(inconclusive).collect()
 }
 
-/// Describes an input that lacks samples, where the calibration was refused for them: the unit isn't responsible.
+/// Describes an input that lacks what the calibration was refused for: the unit isn't responsible.
 fn lacking(scenario: &Scenario, run: &MethodRun) -> Option<String> {
     let refused = run.calibration.as_ref()?.refused.as_ref()?;
-    if Seen::of(refused) != Seen::Samples || !scenario.faults.is_empty() {
-        return None;
-    }
-    let lacks = |input: &&Account| input.missing_count() + input.left_out_count() > 0;
-    let input = run.bench.inputs.iter().find(lacks)?;
-    Some(format!("{}: the calibration was refused for the samples that it lacks", input.headline()))
+    let mut inputs = run.bench.inputs.iter().filter(|_| scenario.faults.is_empty());
+    let (input, lacks) = match Seen::of(refused) {
+        Seen::Samples => {
+            let lacks = |input: &&Account| input.missing_count() + input.left_out_count() > 0;
+            (inputs.find(lacks)?, "samples")
+        }
+        Seen::Reference => {
+            (inputs.find(|input| input.name().ends_with(OF_REFERENCE))?, "measurements")
+        }
+        _ => return None,
+    };
+    Some(format!("{}: the calibration was refused for the {lacks} that it lacks", input.headline()))
 }
 
 /// Lists where the bench was late, lost samples, or did not send them.

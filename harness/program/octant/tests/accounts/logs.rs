@@ -39,7 +39,7 @@ fn frames(protocol: Protocol, unit: &Unit<'_>) -> Vec<Vec<u8>> {
     .collect()
 }
 
-fn reading(row: &Rest, stamp_ns: u64, counter: u64, status: Status) -> Reading {
+pub fn reading(row: &Rest, stamp_ns: u64, counter: u64, status: Status) -> Reading {
     let [gx, gy, gz, ax, ay, az] = row.values.map(|rate| rate / RATE_HZ);
     Reading {
         rotation: Some(MeasuredTriad::increment([gx, gy, gz])),

@@ -88,6 +88,28 @@ fn plain(messages: &[Message]) -> Vec<u8> {
     file(messages, "json", mcap::WriteOptions::new().compression(None))
 }
 
+/// A file whose first half is a chunk of its own, cut off behind it.
+fn half_then_torn(messages: &[Message]) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = mcap::WriteOptions::new().compression(None).create(&mut bytes).unwrap();
+    let channel_id = writer.add_channel(0, "/imu", "json", &BTreeMap::new()).unwrap();
+    let (first, rest) = messages.split_at(messages.len() / 2);
+    for half in [first, rest] {
+        for Message { log_ns, data, .. } in half {
+            let (log_time, publish_time) = (*log_ns, *log_ns);
+            let header =
+                mcap::records::MessageHeader { channel_id, sequence: 0, log_time, publish_time };
+            writer.write_to_known_channel(&header, data).unwrap();
+        }
+        writer.flush().unwrap();
+    }
+    writer.finish().unwrap();
+    drop(writer);
+    let mut bytes = bytes.into_inner();
+    bytes.truncate(bytes.len() * 3 / 5);
+    bytes
+}
+
 struct Mcap {
     part: Part,
     scenario: String,
@@ -261,7 +283,22 @@ fn messages_of_mcap() {
         twice.insert(k, again);
     }
     mcap.row("two messages twice", &plain(&twice), &STAMPS, used(COUNT).left_out(2), Ends::Pass);
-    // Damage.
+    // Damage. A file that is cut off has its whole chunks.
+    let all = regular();
+    let torn = half_then_torn(&all);
+    mcap.row(
+        "cut off in the middle of a chunk",
+        &torn,
+        &[],
+        used(COUNT / 2),
+        Ends::Inconclusive("unit.mcap ends in the middle of a recording"),
+    );
+    mcap.refused(
+        "cut off within the first chunk",
+        &whole[..whole.len() / 2],
+        &[],
+        "the file is truncated",
+    );
     let mut flipped = file(
         &regular(),
         "json",
@@ -315,7 +352,7 @@ fn messages_of_mcap() {
         "messages of another encoding",
         &file(&regular(), "protobuf", mcap::WriteOptions::new().compression(None)),
         &[],
-        "topic /imu is in protobuf, expected json or cdr",
+        "topic /imu is in protobuf, expected json, cdr or ros1",
     );
     mcap.refused("an empty file", &[], &[], "");
     mcap.refused("text", b"t,gx,gy,gz\n", &[], "");

@@ -55,6 +55,8 @@ pub enum Ends {
     Inconclusive(&'static str),
     /// The program refuses the input with these words.
     Refused(&'static str),
+    /// The run breaks off with these words.
+    Broken(&'static str),
 }
 
 /// Estimate and σ by parameter.
@@ -84,6 +86,8 @@ pub struct Part {
     refusals: Vec<String>,
     /// Parameters of the undamaged input.
     pub clean: Option<Parameters>,
+    /// Name that differs from run to run, as a port of this host, and the one that the page has.
+    pub hidden: Option<(String, &'static str)>,
 }
 
 impl Part {
@@ -95,6 +99,7 @@ impl Part {
             wrong: Vec::new(),
             refusals: refusals(),
             clean: None,
+            hidden: None,
         }
     }
 
@@ -123,6 +128,7 @@ impl Part {
             Ends::Fail(words) => ("fail", words),
             Ends::Inconclusive(words) => ("inconclusive", words),
             Ends::Refused(words) => ("refused", words),
+            Ends::Broken(words) => ("broken off", words),
         };
         let reason = found.reasons.iter().find(|reason| reason.contains(words));
         if found.verdict != verdict || (!words.is_empty() && reason.is_none()) {
@@ -131,7 +137,7 @@ impl Part {
                 found.verdict, found.reasons
             ));
         }
-        if let Ends::Inconclusive(_) | Ends::Refused(_) = case.ends {
+        if let Ends::Inconclusive(_) | Ends::Refused(_) | Ends::Broken(_) = case.ends {
             let told = reason.map_or("", String::as_str);
             if !self.refusals.iter().any(|words| told.contains(words)) {
                 wrong.push(format!("docs/real-data.md doesn't say what it means: {told}"));
@@ -174,7 +180,11 @@ impl Part {
             ));
         }
         let reason = reason.or(found.reasons.first()).map_or("", String::as_str);
-        self.row(case, verdict, reason, &counted);
+        let reason = match &self.hidden {
+            None => reason.to_owned(),
+            Some((name, shown)) => reason.replace(name, shown),
+        };
+        self.row(case, verdict, &reason, &counted);
         parameters
     }
 
@@ -290,9 +300,15 @@ impl Found {
             })
             .collect();
         let Some(summary) = summary else {
-            let verdict =
-                if status == Some(2) { "refused".to_owned() } else { format!("status {status:?}") };
-            return Self { verdict, reasons: refused, counts: BTreeMap::new() };
+            let gone = said.lines().filter_map(|line| line.split_once(" is gone: "));
+            let (verdict, reasons) = match status {
+                Some(2) => ("refused".to_owned(), refused),
+                Some(4) => {
+                    ("broken off".to_owned(), gone.map(|(_, reason)| reason.to_owned()).collect())
+                }
+                status => (format!("status {status:?}"), refused),
+            };
+            return Self { verdict, reasons, counts: BTreeMap::new() };
         };
         let texts = |value: &Value| -> Vec<String> {
             let all = value.as_array().into_iter().flatten();
