@@ -312,9 +312,9 @@ impl Counting {
             .first(in_place(self.firsts.repeated));
         // Rows that wait when a run ends before its file are not read yet.
         let used = tally.placed - tally.shifted;
-        let rest = AccountEntry::new(
-            u64::from(!self.has_ended || !self.rows.is_empty()),
-            "end of the run before the end of the file: the rest is not read",
+        let rest = AccountEntry::fact(
+            !self.has_ended || !self.rows.is_empty(),
+            "the run ended before the file: the rest is not read",
         );
         let saturated = AccountEntry::new(
             self.saturated(),
@@ -330,9 +330,9 @@ impl Counting {
             .note(saturated)
             .clock(Some(self.clock(outside)));
         if self.timeline.is_blind() {
-            let note = AccountEntry::new(
-                1,
-                format!("file whose stamps scatter so much that a missing {one} can't be seen"),
+            let note = AccountEntry::fact(
+                true,
+                format!("the stamps scatter so much that a missing {one} can't be seen"),
             );
             let remedy = format!("where no {one} is missing, {other_times}");
             account = account.note(note.remedy(remedy).weight(Weight::Doubt));

@@ -161,9 +161,9 @@ impl MeasuredReference {
             "measurements of a time before the samples, or in a gap of them",
         )
         .first(format!("at {} s", plain(first_s, 9)));
-        let rest = AccountEntry::new(
-            u64::from(!self.has_ended),
-            "end of the run before the end of the file: the rest is not read",
+        let rest = AccountEntry::fact(
+            !self.has_ended,
+            "the run ended before the file: the rest is not read",
         );
         Account::new(format!("{path}{OF_REFERENCE}"), unit)
             .used(self.given)

@@ -62,9 +62,9 @@ pub(super) fn account(
         .missing(missing)
         .note(disagreeing.weight(Weight::Doubt))
         .clock(Some(clock));
-    let blind = AccountEntry::new(
-        u64::from(sampler.timeline().is_blind()),
-        "unit whose stamps scatter so much that a missing reading can't be seen",
+    let blind = AccountEntry::fact(
+        sampler.timeline().is_blind(),
+        "the stamps scatter so much that a missing reading can't be seen",
     );
     let account = account.note(blind.weight(Weight::Doubt));
     let Some(frames) = frames else { return account };

@@ -23,7 +23,7 @@ fn input(account: &Account) -> Markup {
                     @for (heading, entry) in entries {
                         tr {
                             td { (heading) }
-                            td.n { (entry.count) }
+                            td.n { @if entry.is_fact { "–" } @else { (entry.count) } }
                             td { (entry.kind) @if let Some(remedy) = &entry.remedy { "; " (remedy) } }
                             td { (entry.first.as_deref().unwrap_or("–")) }
                             td { (match entry.weight {

@@ -42,13 +42,29 @@ pub struct AccountEntry {
     /// Effect on the verdict.
     #[serde(default, skip_serializing_if = "Weight::is_told")]
     pub weight: Weight,
+    /// True for a fact about the whole input, which has no number.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_fact: bool,
 }
 
 impl AccountEntry {
     /// Creates an entry that can't have changed the verdict.
     #[must_use]
     pub fn new(count: u64, kind: impl Into<String>) -> Self {
-        Self { kind: kind.into(), count, first: None, remedy: None, weight: Weight::Told }
+        Self {
+            kind: kind.into(),
+            count,
+            first: None,
+            remedy: None,
+            weight: Weight::Told,
+            is_fact: false,
+        }
+    }
+
+    /// Creates an entry for a fact about the whole input; none where it doesn't hold.
+    #[must_use]
+    pub fn fact(holds: bool, kind: impl Into<String>) -> Self {
+        Self { is_fact: true, ..Self::new(u64::from(holds), kind) }
     }
 
     /// Adds the place of the first unit.
@@ -86,7 +102,11 @@ impl AccountEntry {
 /// `1200 rows off their fitted time, the first in line 12; write …`.
 impl fmt::Display for AccountEntry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.count, self.kind)?;
+        if self.is_fact {
+            write!(f, "{}", self.kind)?;
+        } else {
+            write!(f, "{} {}", self.count, self.kind)?;
+        }
         if let Some(first) = &self.first {
             write!(f, ", the first {first}")?;
         }

@@ -10,6 +10,8 @@ fn example() -> Account {
         .left_out(AccountEntry::new(0, "rows that are empty"))
         .left_out(AccountEntry::new(100, "repeated rows"))
         .missing(AccountEntry::new(60, "rows in 1 gap").weight(Weight::Doubt))
+        .note(AccountEntry::fact(true, "the run ended before the file"))
+        .note(AccountEntry::fact(false, "the stamps scatter"))
 }
 
 #[test]
@@ -22,6 +24,7 @@ fn lines_say_what_became_of_the_units() {
             "repaired: 900 stamps off their fit, the first in line 12",
             "left out: 100 repeated rows",
             "missing: 60 rows in 1 gap",
+            "note: the run ended before the file",
         ]
     );
     assert_eq!(account.doubts(), ["rows.csv: missing: 60 rows in 1 gap"]);

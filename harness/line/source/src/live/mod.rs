@@ -153,7 +153,7 @@ impl LiveSource {
     /// Entry of readings that came at another rate than they say, by the host's clock.
     fn pace(&self) -> AccountEntry {
         let pace = self.clock.pace(1.0 / self.sampler.rate_hz());
-        pace.map_or(AccountEntry::new(0, ""), |(own_s, arrived_s)| paced(own_s, arrived_s))
+        pace.map_or(AccountEntry::fact(false, ""), |(own_s, arrived_s)| paced(own_s, arrived_s))
     }
 
     fn silent(&mut self) -> SourceError {
@@ -170,12 +170,12 @@ fn paced(own_s: f64, arrived_s: f64) -> AccountEntry {
     let times = own_s / arrived_s;
     let is_off = arrived_s >= PACED_S && (times - 1.0).abs() > PACE_TOLERANCE;
     let kind = format!(
-        "unit whose time goes {} times as fast as the host's: {} s of it came in {} s",
+        "its time goes {} times as fast as the host's: {} s of it came in {} s",
         plain(times, 3),
         plain(own_s, 4),
         plain(arrived_s, 4)
     );
-    AccountEntry::new(u64::from(is_off), kind).weight(Weight::Doubt)
+    AccountEntry::fact(is_off, kind).weight(Weight::Doubt)
 }
 
 impl Source for LiveSource {
@@ -408,7 +408,7 @@ pub(crate) mod tests {
         let fast = Account::new("udp", ["reading", "readings"]).note(paced(50.0, 10.0));
         assert_eq!(
             fast.doubts(),
-            ["udp: 1 unit whose time goes 5 times as fast as the host's: 50 s of it came in 10 s"]
+            ["udp: its time goes 5 times as fast as the host's: 50 s of it came in 10 s"]
         );
     }
 
