@@ -118,7 +118,8 @@ impl Part {
             std::fs::write(folder.path().join(name), content).unwrap();
         }
         let output = program(arguments).current_dir(folder.path()).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let here = format!("{}/", folder.path().display());
+        let said = String::from_utf8_lossy(&output.stderr).replace(&here, "");
         let summary = std::fs::read(folder.path().join("out/summary.json")).ok();
         let summary: Option<Value> = summary.map(|bytes| serde_json::from_slice(&bytes).unwrap());
         let mut wrong = Vec::new();
@@ -295,7 +296,7 @@ impl Found {
             .lines()
             .filter_map(|line| line.strip_prefix("error: "))
             .map(|reason| {
-                let reason = reason.trim_start_matches("failed to read ");
+                let reason = reason.trim_start_matches("failed to ").trim_start_matches("read ");
                 reason.trim_end_matches("; the recorded part is in out.partial").to_owned()
             })
             .collect();
