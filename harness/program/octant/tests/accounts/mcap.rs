@@ -148,6 +148,38 @@ impl Mcap {
     }
 }
 
+/// Gyros and accelerometers on two topics, with stamps of the accelerometers that are late by so much.
+fn apart(late_ns: u64, has_force: impl Fn(u64) -> bool) -> Vec<u8> {
+    let mut both = Vec::new();
+    for (row, k) in readings(RATE_HZ, COUNT).into_iter().zip(0..) {
+        let stamp_ns = ns(row.time_s);
+        both.push(json(&row, stamp_ns, stamp_ns));
+        if has_force(k) {
+            let force = json(&row, stamp_ns, stamp_ns + late_ns);
+            both.push(Message { topic: "/accel", ..force });
+        }
+    }
+    plain(&both)
+}
+
+fn two_topics(mcap: &mut Mcap) {
+    let set = [&STAMPS[..], &["source.mcap.accelerometer.topic=/accel"]].concat();
+    mcap.row("two topics", &apart(0, |_| true), &set, Counts::used(COUNT), Ends::Pass);
+    mcap.row(
+        "two topics, one message without a partner",
+        &apart(0, |k| k != 1000),
+        &set,
+        Counts::used(COUNT - 1).left_out(1).missing(1),
+        Ends::Pass,
+    );
+    mcap.refused(
+        "two topics, stamps 1 ms apart",
+        &apart(1_000_000, |_| true),
+        &set,
+        "of which no two have the same stamp: the nearest two are 1 ms apart",
+    );
+}
+
 #[test]
 fn messages_of_mcap() {
     let mut mcap = Mcap::new();
@@ -353,6 +385,14 @@ fn messages_of_mcap() {
         &file(&regular(), "protobuf", mcap::WriteOptions::new().compression(None)),
         &[],
         "topic /imu is in protobuf, expected json, cdr or ros1",
+    );
+    two_topics(&mut mcap);
+    mcap.refused("a bag of ROS 1", b"#ROSBAG V2.0\n0123456789", &[], "found a bag of ROS 1");
+    mcap.refused(
+        "a bag in SQLite",
+        b"SQLite format 3\0 0123",
+        &[],
+        "found a bag of ROS 2 in SQLite",
     );
     mcap.refused("an empty file", &[], &[], "");
     mcap.refused("text", b"t,gx,gy,gz\n", &[], "");
