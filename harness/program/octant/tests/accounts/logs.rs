@@ -225,7 +225,7 @@ fn logs_of_units() {
         used(COUNT),
         Ends::Pass,
     );
-    let jitter = |k: u64, t: f64| t + if k % 2 == 0 { 2e-3 } else { -2e-3 };
+    let jitter = |k: u64, t: f64| t + if k.is_multiple_of(2) { 2e-3 } else { -2e-3 };
     logs.row(
         "stamps that jitter by ±2 ms",
         &frames(Protocol::Sbg, &Unit { stamp_s: &jitter, ..REGULAR }).concat(),
