@@ -15,7 +15,7 @@
 //! Faults of the physical world act inside the plant, before its sensors integrate
 //! ([`octant_sample::disturbance`]), so that gyros and accelerometers feel the same motion. Faults
 //! of a wire are described here ([`wire`]) and realised by the owner of the wire; those of the host
-//! ([`host`]) by the program that runs on it.
+//! ([`kinds::host`]) by the program that runs on it.
 //!
 //! Nothing here allocates after the station is built, and a station whose faults wait costs a few
 //! comparisons an epoch.

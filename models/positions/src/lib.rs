@@ -4,8 +4,7 @@
 //! |---|---|
 //! | [`sequence`] | stops of the two gimbals, and their repetition |
 //! | [`positions`] | the published sequences |
-//! | [`rates`] | rate and acceleration of a move |
-//! | [`schedule`] | dwells, moves, and the cursor that walks them |
+//! | [`schedule`] | rates of the turntable, dwells, moves, and the cursor that walks them |
 //! | [`visits`] | positions that the stops of a sequence visit, for those who describe it |
 #![cfg_attr(not(test), no_std)]
 

@@ -7,7 +7,6 @@
 //! | `shared` | memory of both processes, for exchanges |
 //! | `watch` | the child process: its time limit, and its end |
 //! | `remote` | the FMU seen from this process |
-//! | [`error`] | reasons why the process of an FMU ends early |
 //! | [`guard`] | the process between both: `octant fmu host` |
 //! | [`host`] | the other process: `octant fmu host --unguarded` |
 //!

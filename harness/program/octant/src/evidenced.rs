@@ -9,7 +9,7 @@ use crate::run_folder::{free_name, in_the_way};
 use crate::run_request::{RunRequest, rerun};
 use crate::source_uri::from_here;
 use crate::terminal::{note, print, write};
-use octant_account::Account;
+use octant_account::{Account, ClockAccount};
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{
     Existing, FmuFacts, FmuFactsError, InputFacts, Manifest, RunFacts, RunFolder,
@@ -123,10 +123,12 @@ fn tell_choices(scenario: &Scenario) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints an account: a line where every unit was used as it was found, else a line for each repair and loss too.
+/// Prints an account: a line where every unit was used as it was found and at the configured rate, else a line for each repair
+/// and loss too.
 fn tell_account(account: &Account) {
     note!("octant: {}", account.headline());
-    if !account.is_plain() || !account.doubts().is_empty() {
+    let is_off = account.clocked().is_some_and(ClockAccount::is_off);
+    if !account.is_plain() || !account.doubts().is_empty() || is_off {
         account.lines().iter().skip(1).for_each(|line| note!("octant:   {line}"));
     }
 }

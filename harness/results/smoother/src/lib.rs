@@ -6,7 +6,7 @@
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`measured`], [`store`] | measurements of a filter, in a file that is read backward: memory doesn't grow with their number |
+//! | [`store`] | measurements of a filter, in a file that is read backward: memory doesn't grow with their number |
 //! | [`backward`] | the smoother: modified Bryson-Frazier recursion |
 //! | [`constancy`] | jumps, ramps, walks and wandering of the parameters |
 //! | [`quadratic`] | tail of a quadratic form in normal variables |

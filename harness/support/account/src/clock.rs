@@ -37,6 +37,18 @@ pub struct OutsideClock {
     pub sigma_ppm: Option<f64>,
 }
 
+/// Difference of the rate from the configured one that is told where all else is as expected, ppm: beyond a good crystal's.
+const OFF_PPM: f64 = 20.0;
+
+impl ClockAccount {
+    /// Returns whether the rate is off the configured one, or the clock off the one outside, by more than a good crystal's error.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        let outside = self.outside.as_ref().map(|outside| outside.fast_ppm);
+        [self.rate_ppm, outside].into_iter().flatten().any(|ppm| ppm.abs() > OFF_PPM)
+    }
+}
+
 impl fmt::Display for ClockAccount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.measured_hz, self.rate_ppm) {

@@ -11,7 +11,7 @@
 //!
 //! Each unit is in exactly one of these: [`Account::read`] is their sum, and an account whose stored sum differs can't be
 //! read. Units that should be there and aren't are [`Account::missing`], which is no part of the sum; facts about the
-//! whole are [`Account::notes`].
+//! whole are a [`Account::note`] each.
 //!
 //! An entry that could have changed the verdict is a [`Weight::Doubt`]: the run is inconclusive at best, with
 //! the entry's line as the reason.

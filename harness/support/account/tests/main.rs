@@ -64,6 +64,7 @@ fn a_clock_is_told_with_its_uncertainty() {
         "200.02 Hz, +100 ± 0.25 ppm from the configured 200 Hz; stamps scatter by 0.3 ms (1 sigma), 1 ms at most; \
          −12.5 ± 0.5 ppm against pulses"
     );
+    assert!(clock.is_off());
     clock = ClockAccount {
         measured_hz: None,
         scatter_s: None,
@@ -76,6 +77,8 @@ fn a_clock_is_told_with_its_uncertainty() {
         "no stamps; 200 Hz is taken from the scenario; no clock outside shows the error of this one; of \
          increments 1 ppm of it is 1 ug of accelerometer bias along gravity"
     );
+    let near = ClockAccount { rate_ppm: Some(-15.0), ..clock };
+    assert!(!near.is_off());
 }
 
 proptest! {

@@ -2,8 +2,7 @@
 //!
 //! - [`mod@allan`] has the Allan variance of a sensor at rest, and the noise terms that describe it
 //! - [`sample`] has the figures of a sample, [`position`] those of position errors: CEP50, R95, drms
-//! - [`mod@deviation`] has the uncertainty of a σ and of a mean, [`radius`] the distance of a normal error in the
-//!   plane
+//! - [`radius`] has the distance of a normal error in the plane
 //! - [`cluster`] finds the independent draws among rows, the unit of inference
 //! - [`quantile`] gives distribution-free bounds, [`proportion`] bounds of a pass probability
 //! - [`rate`] has the radial error rate and the time-RMS, [`mod@envelope`] percentiles over time
