@@ -23,9 +23,18 @@ pub(super) struct Clock {
     base: Instant,
     utc: SystemTime,
     alignment: ClockAlignment,
+    /// Of readings without stamps: their count at the configured rate in place of the stamps.
+    counted: ClockAlignment,
+    period_ns: f64,
     reference: Reference,
     dates: Dates,
     span: Span,
+}
+
+/// Host time of an instant, ns.
+fn host_ns(base: Instant, at: Instant) -> u64 {
+    let since = at.saturating_duration_since(base).as_nanos();
+    BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX))
 }
 
 /// First and last arrivals and stamps, and the number of readings.
@@ -48,11 +57,14 @@ pub(super) enum Reference {
 }
 
 impl Clock {
-    pub(super) fn new(reference: Reference) -> Self {
+    /// Creates the clock of a unit at a configured rate, Hz.
+    pub(super) fn new(reference: Reference, rate_hz: f64) -> Self {
         Self {
             base: Instant::now(),
             utc: SystemTime::now(),
             alignment: ClockAlignment::new(),
+            counted: ClockAlignment::new(),
+            period_ns: 1e9 / rate_hz,
             reference,
             dates: Dates::default(),
             span: Span::default(),
@@ -77,7 +89,12 @@ impl Clock {
         }
         let Some(stamp) = stamp else {
             let needed = match &self.reference {
-                Reference::Arrivals => return Ok(Some(came.at)),
+                Reference::Arrivals => {
+                    // Its count at the configured rate is the only time that the unit has.
+                    let own_ns = self.span.readings as f64 * self.period_ns;
+                    self.counted.add(own_ns.round() as u64, host_ns(self.base, came.at));
+                    return Ok(Some(came.at));
+                }
                 Reference::Pulses(_) => "source.live.pps",
                 Reference::Scale(_) => "source.live.stamps",
             };
@@ -87,10 +104,7 @@ impl Clock {
             ));
         };
         let base = self.base;
-        let host_ns = |at: Instant| {
-            let since = at.saturating_duration_since(base).as_nanos();
-            BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX))
-        };
+        let host_ns = |at: Instant| host_ns(base, at);
         self.alignment.add(stamp.ns, host_ns(came.at));
         if let Reference::Scale(known) = &mut self.reference {
             let time = known.when(stamp, came)?;
@@ -158,11 +172,17 @@ impl Clock {
                 sigma_ppm,
             });
         }
-        let estimate = self.alignment.estimate()?;
+        let (estimate, name) = match self.alignment.estimate() {
+            Some(estimate) => (estimate, "the host's clock, by arrivals"),
+            None => (
+                self.counted.estimate()?,
+                "the host's clock, by the arrivals of readings that have no stamps",
+            ),
+        };
         // A corner of the hull may be as late as the others are; the host's own clock is a crystal.
         let arrivals_ppm = 1e-3 * estimate.late_mean_ns / estimate.span_s;
         Some(OutsideClock {
-            name: "the host's clock, by arrivals".to_owned(),
+            name: name.to_owned(),
             fast_ppm: -1e6 * estimate.skew?,
             sigma_ppm: Some(arrivals_ppm.hypot(HOST_PPM)),
         })
@@ -214,7 +234,7 @@ mod tests {
     /// the others come 2 ms later; each must be dated as if it had come without delay.
     #[test]
     fn a_reading_that_came_late_was_made_when_it_was_made() {
-        let mut clock = Clock::new(Reference::Arrivals);
+        let mut clock = Clock::new(Reference::Arrivals, 200.0);
         let mut worst = Duration::ZERO;
         for number in 0..2000u64 {
             let true_at = clock.base + Duration::from_nanos(7_000_000 + number * 5_000_500);
@@ -253,8 +273,10 @@ mod tests {
             silence_s: 60.0,
             within_s: 20e-6,
         };
-        let mut clock =
-            Clock::new(Reference::Pulses(Box::new(Pulses::open(&plan, folder.path()).unwrap())));
+        let mut clock = Clock::new(
+            Reference::Pulses(Box::new(Pulses::open(&plan, folder.path()).unwrap())),
+            200.0,
+        );
         let delay = Duration::from_millis(23);
         let (start, first_ns) = (clock.base, 1_000_100_000_000u64);
         let made = |number: u64| start + Duration::from_nanos(number * 5_000_250);
@@ -286,9 +308,24 @@ mod tests {
         assert!(error.contains("a reading without a stamp"), "{error}");
     }
 
+    /// Readings without stamps that come at 198 Hz where 200 are configured: 1 % of every increment's time is missing.
+    #[test]
+    fn the_rate_of_readings_without_stamps_is_held_against_the_hosts_clock() {
+        let mut clock = Clock::new(Reference::Arrivals, 200.0);
+        for number in 0..4000_u64 {
+            let late_ns = if number % 3 == 0 { 0 } else { 1_500_000 };
+            let at = clock.base + Duration::from_nanos(number * 1_000_000_000 / 198 + late_ns);
+            clock.when(None, Arrival::read(at)).unwrap();
+        }
+        let outside = clock.outside().unwrap();
+        // A second of the count takes 200/198 s of the host's: 1/99 more.
+        assert!((outside.fast_ppm + 1e6 / 99.0).abs() < 60.0, "{outside:?}");
+        assert!(outside.sigma_ppm.unwrap() < 100.0, "{outside:?}");
+    }
+
     #[test]
     fn without_a_stamp_it_is_when_it_came() {
-        let mut clock = Clock::new(Reference::Arrivals);
+        let mut clock = Clock::new(Reference::Arrivals, 200.0);
         let came = clock.base + Duration::from_millis(3);
         assert_eq!(clock.when(None, Arrival::read(came)), Ok(Some(came)));
         assert!(clock.told().is_none());

@@ -118,7 +118,7 @@ impl LiveSource {
             instrument: instrument.clone(),
             sampler: Sampler::new(settings),
             rate: RateCheck::new(rate_hz),
-            clock: Clock::new(reference),
+            clock: Clock::new(reference, rate_hz),
             table: None,
             turning_radps: None,
             total: samples.unwrap_or(u64::MAX),
