@@ -98,8 +98,14 @@ fn a_recording_has_the_messages_of_its_export() {
         let exported = further(&std::fs::read(folder.path().join(&out)).unwrap());
         for (topic, messages) in &recorded {
             let of_export = &exported[topic];
+            // Octant's own messages are JSON in a recording and CDR in a bag, where `ros_published` and the rig of exports compare
+            // their numbers: here their times are.
+            let is_standard = STANDARD.contains(&topic.as_str());
             for message in messages {
-                let same = of_export.iter().filter(|other| *other == message).count();
+                let is_same = |other: &&(u64, Vec<u8>)| {
+                    if is_standard { *other == message } else { other.0 == message.0 }
+                };
+                let same = of_export.iter().filter(is_same).count();
                 assert!(same >= 1, "{name}, {topic} at {} ns", message.0);
             }
             assert!(messages.len() <= of_export.len());
