@@ -1941,7 +1941,7 @@ class Screening(Section):
     Default: "on"."""
     jumps: Literal["on", "off"]
     """Samples that jump as no motion of turntable and base can are not believed. Takes one of "on", "off".
-    Default: recordings as text: "off"; else "on"."""
+    Default: "on"."""
     stuck_samples: Literal["off"] | int
     """Identical counts in a row that make a channel stuck. Takes "off", or a whole number from 2 to 1000000.
     Default: 8."""
@@ -2344,7 +2344,7 @@ class SourceLog(Section):
     """What the instrument spoke. Takes one of "vectornav", "xsens", "novatel", "sbg", "octant", "described"."""
 
 class SourceMcapAccelerometer(Section):
-    """Fields of the accelerometers. Takes a table with x, y, z, unit, quantity, scale, offset, axes."""
+    """Fields of the accelerometers. Takes a table with topic, x, y, z, unit, quantity, scale, offset, axes."""
 
     axes: Sequence[Literal["x", "-x", "y", "-y", "z", "-z"]]
     """Which instrument axis, with its sign, lies along body x, y and z. Takes a list of some of x, -x, y, -y, z,
@@ -2356,6 +2356,9 @@ class SourceMcapAccelerometer(Section):
     scale: Sequence[float]
     """Unit per raw number, x, y, z, before axes are exchanged: value = (raw − offset) · scale. Takes 3 numbers.
     Default: [1.0, 1.0, 1.0]."""
+    topic: str
+    """Topic of the accelerometers, where it isn't that of the gyros: messages with equal stamps are taken
+    together. Takes a text in quotes. Default: source.mcap.topic."""
     unit: Literal["m/s^2", "g", "mg", "m/s", "mm/s"]
     """Unit after scaling. Takes one of "m/s^2", "g", "mg", "m/s", "mm/s". Default: "m/s^2"."""
     x: str
@@ -2394,7 +2397,7 @@ class SourceMcap(Section):
 
     @property
     def accelerometer(self) -> SourceMcapAccelerometer:
-        """Fields of the accelerometers. Takes a table with x, y, z, unit, quantity, scale, offset, axes."""
+        """Fields of the accelerometers. Takes a table with topic, x, y, z, unit, quantity, scale, offset, axes."""
     @accelerometer.setter
     def accelerometer(self, value: SourceMcapAccelerometer | Mapping[str, Any]) -> None: ...
     @property
@@ -2422,7 +2425,7 @@ class SourceMcap(Section):
     time_unit: Literal["s", "ms", "us", "ns"]
     """Unit of the time stamp. Takes one of "s", "ms", "us", "ns". Default: "ns"."""
     topic: str
-    """Topic of the inertial samples. Takes a text in quotes."""
+    """Topic of the inertial samples, or of the gyros. Takes a text in quotes."""
 
 class SourceReference(Section):
     """The reference of a calibration, where the source brings none: what is known of the motion of text, another
