@@ -318,7 +318,10 @@ fn a_temperature_that_is_none_is_refused_with_its_place() {
     let missing = said(&plain, &["source.text.temperature_column=warmth"]);
     assert!(missing.contains("no column \"warmth\", found device_time_s"), "{missing}");
     let nan = said(&|k, t| if k == 700 { "nan".into() } else { plain(k, t) }, &[COLUMN]);
-    assert!(nan.contains("line 702: column 8: temperature NaN degC, expected a finite number"), "{nan}");
+    assert!(
+        nan.contains("line 702: column 8: temperature NaN degC, expected a finite number"),
+        "{nan}"
+    );
     let jump = said(&|k, t| plain(k, if k == 700 { t + 50.0 } else { t }), &[COLUMN]);
     assert!(
         jump.contains("line 702: column 8: temperature")
