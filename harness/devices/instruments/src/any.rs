@@ -164,7 +164,7 @@ impl AnyDecoder {
         match self {
             Self::Described(decoder) => decoder.protocol().has_checksums(),
             Self::Lines(decoder) => decoder.has_checksums(),
-            // Of a file, whose pieces follow each other.
+            // Pieces of a file follow each other.
             Self::Records(_) => true,
             _ => true,
         }

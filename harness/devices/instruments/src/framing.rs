@@ -53,7 +53,7 @@ pub enum ReadingDefect {
     Record {
         /// Number of the record, from 1.
         number: u64,
-        /// What shows it.
+        /// Sign by which the loss was seen.
         cause: RecordDefect,
     },
     /// The frame is intact, but is no message of the Octant wire.

@@ -34,7 +34,7 @@ pub enum Unusable {
     Restarted {
         /// Stamp, or counted time, before, s.
         from_s: f64,
-        /// That of the reading, s.
+        /// Stamp, or counted time, of the reading, s.
         to_s: f64,
     },
     /// The clock jumps ahead by more than a day.

@@ -167,7 +167,7 @@ fn what_is_no_line_is_counted_and_never_a_reading() {
         let (readings, lost) = decode(&mut decoder, text.as_bytes(), 1000);
         assert_eq!(lost.iter().map(ToString::to_string).collect::<Vec<_>>(), [expected], "{line}");
         assert_eq!(readings.iter().map(|r| r.sequence.unwrap()).collect::<Vec<_>>(), [1, 3]);
-        // What can't be read doesn't move the counter.
+        // A line that can't be read doesn't move the counter.
         assert_eq!(decoder.counters().missing, 1, "{line}");
     }
     // A flag of the unit, and a number that is none.

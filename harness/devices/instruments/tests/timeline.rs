@@ -156,7 +156,7 @@ fn stamps_of_bursts_and_of_few_digits_are_no_gaps_and_a_gap_among_them_is_one() 
             let (all, timeline, end) = of(digits, lost);
             assert_eq!(end, None, "{name}");
             let tally = timeline.tally();
-            // Of stamps that scatter by more than a period, a gap may be seen in two parts.
+            // A gap may be seen in two parts where stamps scatter by more than a period.
             assert_eq!((tally.missing, tally.repeated), (lost, 0), "{name}: {tally:?}");
             assert!(tally.gaps <= lost.min(2), "{name}: {tally:?}");
             assert!(tally.shifted > 8, "{name}: {tally:?}");
@@ -264,6 +264,25 @@ fn a_counter_decides_and_stamps_that_disagree_are_counted() {
     }
     assert_eq!(last.unwrap().time_ns, 16_666_667 + (5999.0 * 1e9 / 60.0_f64).round() as u64);
     assert_eq!(timeline.rate(), None);
+}
+
+#[test]
+fn readings_whose_stamp_is_missing_follow_the_line_of_the_others() {
+    let mut timeline = Timeline::new(200.0);
+    let mut last: Option<Placed> = None;
+    // A clock 1000 ppm slow since long before, of which every third reading, and a stretch of 500, has no stamp.
+    for k in 0..6000_u64 {
+        let stamp_ns = 7_000_000_000_000 + k * 5_005_000;
+        let has_stamp = k == 0 || (k % 3 != 1 && !(3000..3500).contains(&k));
+        let one = timeline.place(has_stamp.then_some(stamp_ns), None, || Ahead::NONE).unwrap();
+        if k > 1000 {
+            assert!(one.time_ns.abs_diff(stamp_ns) < 20_000, "reading {k}: {one:?}");
+            assert!(one.interval_ns.abs_diff(5_005_000) < 2_000, "reading {k}: {one:?}");
+        }
+        assert!(last.is_none_or(|last| one.number == last.number + 1), "reading {k}: {one:?}");
+        last = Some(one);
+    }
+    assert_eq!(timeline.tally().gaps, 0);
 }
 
 proptest! {

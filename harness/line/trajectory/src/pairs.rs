@@ -363,7 +363,7 @@ impl SolutionPairs {
         }
     }
 
-    /// What the comparison so far shows besides the errors.
+    /// Returns the findings of the comparison so far, besides the errors.
     #[must_use]
     pub fn comparison(&self) -> &Comparison {
         &self.comparison

@@ -42,7 +42,7 @@ pub use table::{DescriptionProblem, VERSION};
 pub struct UnitDescription {
     /// Name of the unit and its format.
     pub name: String,
-    /// What it sends.
+    /// Frames, records or lines that the unit sends.
     pub form: UnitForm,
 }
 

@@ -1,4 +1,4 @@
-//! What the fields of all frames have in common.
+//! Ranges of fields, the same in all frames.
 
 use super::fields::ReadField;
 use super::table::{DescriptionProblem, Table};

@@ -108,7 +108,7 @@ fn frames(root: &Table<'_>, version: i64) -> Result<RecordDescription, Descripti
         .map_err(|error| root.problem("frame", error.to_string()))
 }
 
-/// What holds for all frames.
+/// Settings that hold for all frames.
 struct Given<'a> {
     checksum: Option<&'a Table<'a>>,
     order: ByteOrder,

@@ -117,6 +117,15 @@ impl Line {
         since - (self.phase_ns + steps as f64 * self.period_ns)
     }
 
+    /// Moves the line on by so many readings without a stamp.
+    pub(super) fn skip(&mut self, steps: u64) {
+        let k = steps as f64;
+        let [phase, both, period] = self.variance;
+        let phase = phase + k * (2.0 * both + k * period);
+        self.variance = [phase, both + k * period, period + k * DRIFT_VARIANCE];
+        self.phase_ns += k * self.period_ns;
+    }
+
     /// Takes the stamp of a reading so many steps behind the last one; returns its distance from the line before.
     #[inline]
     pub(super) fn take(&mut self, stamp_ns: u64, steps: u64, by_stamps: bool) -> f64 {

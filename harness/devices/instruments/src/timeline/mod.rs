@@ -306,9 +306,15 @@ impl Timeline {
         // Called with a state alone.
         let Some(state) = &mut self.state else { return self.first(None, counter, &Ahead::NONE) };
         let number = state.number.saturating_add(steps);
-        let time_ns =
-            state.line.origin_ns().saturating_add(libm::round(number as f64 * nominal_ns) as u64);
-        let placed = placed(state, number, steps, time_ns, nominal_ns);
+        // A reading without a stamp among others follows the line of the stamps.
+        let (time_ns, period_ns) = if state.stamp.is_some() {
+            state.line.skip(steps);
+            (state.line.time_ns(), state.line.period_ns())
+        } else {
+            let since_ns = libm::round(number as f64 * nominal_ns) as u64;
+            (state.line.origin_ns().saturating_add(since_ns), nominal_ns)
+        };
+        let placed = placed(state, number, steps, time_ns, period_ns);
         state.counter = counter.or(state.counter);
         note_gap(&mut self.tally, read, &placed, nominal_ns, None);
         self.tally.placed += 1;

@@ -122,7 +122,7 @@ pub struct BenchEnd {
     pub cut_short: Option<String>,
     /// Accounts of what the source read from outside.
     pub inputs: Vec<Account>,
-    /// What the comparison of a solution with its reference shows besides the errors.
+    /// Findings of the comparison of a solution with its reference, besides the errors.
     pub compared: Option<Box<Comparison>>,
     /// Time keeping of a run by the clock.
     pub kept: Option<TimeKeeping>,

@@ -107,7 +107,7 @@ impl TrueMotion {
         let north_m = (truth.latitude_rad - before.latitude_rad) * earth.meridian_radius_m;
         let east_m = (truth.longitude_rad - before.longitude_rad) * across_m;
         let change = |axis: usize| truth.velocity_mps[axis] - before.velocity_mps[axis];
-        // Of unit quaternions the chord: 2 sin(angle / 4), the shorter way round.
+        // The chord of unit quaternions is 2 sin(angle / 4), the shorter way round.
         let chord = |sign: f64| -> f64 {
             let parts = before.q_nb.iter().zip(&truth.q_nb);
             libm::sqrt(parts.map(|(a, b)| (a - sign * b) * (a - sign * b)).sum::<f64>())
