@@ -74,12 +74,14 @@ pub fn write(
             open_discrepancies: report.open(),
             results_blake3: report.statistics.results_blake3.clone(),
             program_sha256: program,
+            made_by: report.made_by.clone(),
             selftest: report.selftest.as_ref().map(|test| test.verdict),
             first_result: first,
             last_result: last,
             rerun: again(report),
         }),
         key,
+        accounts: report.statistics.inputs.clone(),
         ..RunFacts::between(started, SystemTime::now())
     };
     Ok(Manifest::write(folder, &facts)?)

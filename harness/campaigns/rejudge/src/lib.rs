@@ -16,8 +16,10 @@ use octant_campaign::store::{CampaignResults, StoredResult, keep_in};
 use octant_evidence::ended::is_partial;
 use octant_evidence::files;
 use octant_evidence::manifest::{self, FILE_NAME, Manifest, ManifestError};
-use octant_evidence::statements::{SUMMARY, certified};
+use octant_evidence::planned::unplanned;
+use octant_evidence::statements::{SCENARIO, SUMMARY, certified};
 use octant_nightly::night::{self, Night};
+use octant_scenario::Scenario;
 use octant_score::numerics::{NUMERICS, differs};
 use octant_score::rederive;
 use octant_score::summary::Summary;
@@ -225,6 +227,12 @@ fn run(folder: &Path, manifest: &Manifest) -> Result<Subject, RejudgeError> {
         ));
     }
     let stored = Summary::from_json(&text).map_err(|error| form(&path, error))?;
+    let scenario = Scenario::load(&folder.join(SCENARIO), &[])
+        .map_err(|reason| form(&folder.join(SCENARIO), reason))?;
+    let found = unplanned(&scenario, &stored);
+    if !found.is_empty() {
+        return Err(form(&path, format!("it isn't what was planned: {}", found.join("; "))));
+    }
     let certified = certified(manifest).map_err(|reason| form(&folder.join(FILE_NAME), reason))?;
     let again = rederive::rejudge(&stored, &certified).map_err(|error| form(&path, error))?;
     let now = again.summary;

@@ -18,3 +18,4 @@ mod refusal;
 mod rotation;
 mod unit;
 mod whiteness;
+mod wire_account;

@@ -1,7 +1,7 @@
 //! `octant characterise`: the noise of an instrument from a recording at rest.
 
 use crate::failure::Failure;
-use crate::terminal::{print, print_json, write};
+use crate::terminal::{print, print_json, tell_account, write};
 use clap::{ArgGroup, Args};
 use octant_characterise::recording::RestingRecording;
 use octant_characterise::result::characterise;
@@ -59,6 +59,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         RestingRecording::of(&path, scenario.as_deref(), set).map_err(Failure::input)?;
     let seed = (!no_twin).then_some(*seed);
     let result = characterise(&recording, seed).map_err(Failure::input)?;
+    result.inputs.iter().for_each(tell_account);
     if let Some(file) = imu {
         write(file, &result.imu)?;
     }

@@ -8,8 +8,7 @@ use crate::progress::Follower;
 use crate::run_folder::{free_name, in_the_way};
 use crate::run_request::{RunRequest, rerun};
 use crate::source_uri::from_here;
-use crate::terminal::{note, print, write};
-use octant_account::{Account, ClockAccount};
+use crate::terminal::{note, print, tell_account, write};
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{
     Existing, FmuFacts, FmuFactsError, InputFacts, Manifest, RunFacts, RunFolder,
@@ -123,16 +122,6 @@ fn tell_choices(scenario: &Scenario) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints an account: a line where every unit was used as it was found and at the configured rate, else a line for each repair
-/// and loss too.
-fn tell_account(account: &Account) {
-    note!("octant: {}", account.headline());
-    let is_off = account.clocked().is_some_and(ClockAccount::is_off);
-    if !account.is_plain() || !account.doubts().is_empty() || is_off {
-        account.lines().iter().skip(1).for_each(|line| note!("octant:   {line}"));
-    }
-}
-
 /// Records of the operator of a run, and the reasons why they make it no evidence.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
@@ -199,6 +188,7 @@ impl Asked {
                 Failure::input(format!("{file}: --only-faults: {reason}"))
             })?;
         }
+        scenario.require(request.requirements.clone());
         let seed = request.seed.unwrap_or(scenario.seed);
         Ok(Self { scenario, seed, left_out })
     }
@@ -261,7 +251,8 @@ impl Asked {
         let reasons = what_broke(&primary, baseline.as_ref());
         let link = primary.bench.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
         let instrument = primary.bench.instrument.as_ref();
-        primary.bench.inputs.iter().for_each(tell_account);
+        let accounts = primary.bench.accounts();
+        accounts.iter().for_each(tell_account);
         let bench = instrument.and_then(|bench| serde_json::to_value(bench).ok());
         let bench = with_power(bench, primary.bench.power.as_deref());
         let realtime = primary.bench.kept.as_ref().map(|kept| kept.granted.clone());
@@ -272,7 +263,6 @@ impl Asked {
         let Answers { records: answers, reasons: operator } = answers;
         let day = Some(Day::of(ended));
         let choice = Choice { require: request.require, left_out, day, operator };
-        let accounts = primary.bench.inputs.clone();
         let run = assemble_with(&scenario, seed, primary, baseline, &choice)
             .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
         for (name, table) in tables {
@@ -399,8 +389,9 @@ pub(crate) fn on_recording(
     })
 }
 
-/// Runs a case of a campaign with all the evidence of a run.
+/// Runs a case of a campaign with all the evidence of a run: also the requirements of the campaign. `line` runs it again.
 pub(crate) fn case(
+    line: Vec<String>,
     planned: &octant_campaign::plan::PlannedScenario,
     case: &octant_campaign::plan::Case,
     out: &Path,
@@ -408,6 +399,8 @@ pub(crate) fn case(
     run(&RunRequest {
         scenario: planned.file.clone(),
         places: planned.places(),
+        requirements: planned.required(),
+        call: Some(line),
         set: case.set.to_strings(),
         out: Some(out.to_owned()),
         seed: Some(case.seed),

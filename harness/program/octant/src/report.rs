@@ -10,6 +10,7 @@ use octant_calibration::table::CalibrationTable;
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::Dispositions;
 use octant_evidence::manifest::{FILE_NAME as MANIFEST, shell_line};
+use octant_evidence::planned::unplanned;
 use octant_evidence::statements::SUMMARY;
 use octant_evidence::{Manifest, ManifestError, discrepancy};
 use octant_faults::rule::UnitEvent;
@@ -87,6 +88,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let scenario_path = folder.join("scenario.toml");
     let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
+    let found = unplanned(&scenario, &summary);
+    if !found.is_empty() {
+        return Err(wrong(format!("it isn't what was planned: {}", found.join("; "))));
+    }
     let dispositions = match said_in {
         None => Dispositions::default(),
         Some(path) => disposed(&summary, path, folder)?,

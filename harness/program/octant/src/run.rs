@@ -150,6 +150,7 @@ fn request(arguments: &Arguments) -> RunRequest {
         source: source.clone(),
         endpoint: endpoint.clone(),
         fire: fire.clone(),
+        requirements: Vec::new(),
         only_faults: only_faults.clone(),
         planned_faults: false,
         require: *require,

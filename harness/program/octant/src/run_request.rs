@@ -1,7 +1,7 @@
 //! Request for a run of a scenario, and the command line that asks for it again.
 
 use crate::attendant::OperatorWays;
-use octant_scenario::FilePlaces;
+use octant_scenario::{FilePlaces, RequirementSpec};
 use std::path::PathBuf;
 
 /// Request for a run of a scenario.
@@ -27,6 +27,8 @@ pub struct RunRequest {
     pub endpoint: Option<String>,
     /// Faults that are triggered by hand, `ID=TIME`.
     pub fire: Vec<String>,
+    /// Requirements that a campaign adds to those of the scenario. No line of `octant run` has them: they need a call.
+    pub requirements: Vec<RequirementSpec>,
     /// Ids of the faults that are injected; `None` for all.
     pub only_faults: Option<Vec<String>>,
     /// The faults are the ones that a campaign plans for its case: none is left out.
@@ -63,6 +65,7 @@ pub(crate) fn rerun(request: &RunRequest, used_seed: u64) -> Vec<String> {
         source,
         endpoint,
         fire,
+        requirements: _,
         only_faults,
         planned_faults: _,
         require,

@@ -10,6 +10,7 @@ use octant_campaign::judge::status;
 use octant_campaign::merge::results;
 use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::{Case, Plan, PlanWritten};
+use octant_campaign::report::CampaignReport;
 use octant_campaign::store::{CampaignResults, StoreOutcome, keep};
 use octant_campaign::table::{ColumnValue, ExistingTable};
 use octant_verdict::Verdict;
@@ -345,6 +346,34 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     let text = stored::text(&folder, id);
     assert_eq!(keep(&folder, id, text.as_bytes()).unwrap(), StoreOutcome::Same);
 
+    // One of the results is stored by this process, the other by the program: nobody could tell from the results.
+    let mixed = bench.at("mixed");
+    keep(&mixed, id, text.as_bytes()).unwrap();
+    let never = AtomicBool::new(false);
+    let lock = std::fs::File::create(mixed.join("plan.json")).unwrap();
+    for (lock_all, shard) in [(true, "1/1"), (true, "1/2"), (false, "1/1")] {
+        if lock_all { lock.lock() } else { lock.lock_shared() }.unwrap();
+        let error =
+            begin(&plan, &mixed, Shard::parse(shard).unwrap(), 1, &never, false).unwrap_err();
+        assert!(error.contains("another octant campaign run works on it"), "{shard}: {error}");
+    }
+    drop(lock);
+    run(&plan, &mixed, Shard::WHOLE, 2);
+    let report = |folder: &Path| {
+        let report = CampaignReport::of(&plan, folder).unwrap();
+        let found = report.statistics.discrepancies.iter();
+        let found: Vec<String> = found.map(|found| found.what.clone()).collect();
+        (report.made_by, found)
+    };
+    let (made_by, found) = report(&mixed);
+    assert_eq!(made_by.iter().map(|made| made.results).collect::<Vec<_>>(), [1, 1]);
+    let programs: Vec<_> =
+        made_by.iter().map(|made| made.maker.as_ref().unwrap().program_sha256.clone()).collect();
+    assert!(programs.contains(&octant_base::hash::sha256(Path::new(OCTANT)).ok()), "{programs:?}");
+    assert!(found.iter().any(|what| what.contains("the results are by 2 programs")), "{found:?}");
+    let (made_by, found) = report(&folder);
+    assert!(made_by.len() == 1 && !found.iter().any(|what| what.contains("programs")), "{found:?}");
+
     // The same case again, with another result.
     let mut other: serde_json::Value = serde_json::from_str(&text).unwrap();
     other["summary"]["stream_hash"] = "another".into();
@@ -359,7 +388,18 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     let elsewhere = bench.at("elsewhere");
     run(&plan, &elsewhere, Shard::WHOLE, 2);
     let both = [folder.clone(), elsewhere.clone()];
-    assert_eq!(merge::merge(&plan, &both, &bench.at("good"), 2).unwrap().cases, 2);
+    let merged = merge::merge(&plan, &both, &bench.at("good"), 2).unwrap();
+    assert_eq!(merged.cases, 2);
+    // Each of the parts has both cases: the second ones are left out.
+    let account = &merged.account;
+    assert_eq!((account.read(), account.used_count(), account.left_out_count()), (4, 2, 2));
+    let merged = merge::merge(&plan, &both, &bench.at("one"), 1).unwrap();
+    let told = merged.account.lines();
+    assert_eq!(told[0], "results of the parts: 4 results read, 1 used, 3 left out");
+    assert!(
+        told.contains(&"left out: 2 results after the point at which the campaign stopped".into()),
+        "{told:?}"
+    );
     stored::put(&elsewhere, id, &other);
     run(&plan, &elsewhere, Shard::WHOLE, 2);
     let error = merge::merge(&plan, &both, &bench.at("bad"), 2).unwrap_err();

@@ -235,19 +235,7 @@ fn the_report_of_a_run_refuses_what_the_manifest_contradicts() {
     assert!(!out.exists());
     // With the manifest made again, the summary contradicts itself.
     let manifest = std::fs::read_to_string(run.join("manifest.json")).unwrap();
-    let mut all: Value = serde_json::from_str(&manifest).unwrap();
-    let bytes = std::fs::read(&path).unwrap();
-    for file in all["files"].as_array_mut().unwrap() {
-        if file["path"] == "summary.json" {
-            use sha2::{Digest, Sha256};
-            let sha256 = Sha256::digest(&bytes);
-            let sha256: String = sha256.iter().map(|byte| format!("{byte:02x}")).collect();
-            file["blake3"] = blake3::hash(&bytes).to_hex().as_str().into();
-            file["sha256"] = sha256.into();
-            file["bytes"] = bytes.len().into();
-        }
-    }
-    std::fs::write(run.join("manifest.json"), all.to_string()).unwrap();
+    renew(&run, "summary.json");
     let (status, said) = report();
     assert!(status == 2 && said.contains("NAV-1 says pass"), "{status} {said}");
     let (said, _) = ends(&["verify", run.to_str().unwrap()], 1);
@@ -263,6 +251,89 @@ fn the_report_of_a_run_refuses_what_the_manifest_contradicts() {
     std::fs::write(&recording, bytes).unwrap();
     let (status, said) = report();
     assert!(status == 2 && said.contains("recording.mcap"), "{status} {said}");
+}
+
+/// Makes the manifest of a run again, for a file that was changed.
+fn renew(run: &Path, name: &str) {
+    use sha2::{Digest, Sha256};
+    let path = run.join("manifest.json");
+    let mut all: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let bytes = std::fs::read(run.join(name)).unwrap();
+    let files = all["files"].as_array_mut().unwrap();
+    let file = files.iter_mut().find(|file| file["path"] == name).unwrap();
+    let sha256 = Sha256::digest(&bytes);
+    file["blake3"] = blake3::hash(&bytes).to_hex().as_str().into();
+    file["sha256"] = sha256.iter().map(|byte| format!("{byte:02x}")).collect::<String>().into();
+    file["bytes"] = bytes.len().into();
+    std::fs::write(path, all.to_string()).unwrap();
+}
+
+/// Edits that leave a summary consistent in itself: whoever reads it holds it against the scenario.
+#[test]
+fn limits_and_requirements_come_from_the_scenario_and_not_from_the_summary() {
+    let folder = run(TOO_NEAR);
+    let run = folder.path().join("run");
+    let path = run.join("summary.json");
+    let whole = std::fs::read_to_string(&path).unwrap();
+    let summary: Value = serde_json::from_str(&whole).unwrap();
+    assert_eq!(summary["verdict"], "fail");
+    let value = summary["requirements"][0]["value"].as_f64().unwrap();
+    let passed = |summary: &mut Value| {
+        summary["verdict"] = "pass".into();
+        summary["reasons"] = json!([]);
+    };
+    let further = |summary: &mut Value, limit: f64| {
+        passed(summary);
+        let check = &mut summary["requirements"][0];
+        check["limit"] = limit.into();
+        check["margin"] = (limit - value).into();
+        check["verdict"] = "pass".into();
+        check.as_object_mut().unwrap().remove("reason");
+    };
+    let raised = |summary: &mut Value| further(summary, 2.0 * value);
+    let dropped = |summary: &mut Value| {
+        summary["requirements"] = json!([]);
+        summary["verdict"] = "none".into();
+        summary["reasons"] = json!([]);
+    };
+    let renamed = |summary: &mut Value| {
+        further(summary, 2.0 * value);
+        summary["requirements"][0]["id"] = "NAV-9".into();
+    };
+    let accepted = |summary: &mut Value| {
+        summary["decision"]["rule"] = "simple-acceptance".into();
+    };
+    let edits: [(&str, &dyn Fn(&mut Value)); 4] = [
+        ("NAV-1 is navigation.radial_error_nmi.max", &raised),
+        ("NAV-1 is missing: scenario.toml requires", &dropped),
+        ("NAV-9 isn't a requirement of scenario.toml", &renamed),
+        ("it was decided by simple acceptance, scenario.toml asks for guard band", &accepted),
+    ];
+    let run = run.to_str().unwrap();
+    let out = folder.path().join("other.html");
+    for (words, edit) in edits {
+        let mut edited = summary.clone();
+        edit(&mut edited);
+        std::fs::write(&path, edited.to_string()).unwrap();
+        renew(Path::new(run), "summary.json");
+        for (arguments, status) in [
+            (&["verify", run][..], 1),
+            (&["verify", run, "--reexecute"], 1),
+            (&["rejudge", run], 2),
+            (&["report", run, "--out", out.to_str().unwrap()], 2),
+            (&["watch", run, "--once"], 4),
+        ] {
+            let (said, error) = ends(arguments, status);
+            assert!(said.contains(words) || error.contains(words), "{arguments:?}: {said} {error}");
+        }
+    }
+    let mut edited = summary.clone();
+    raised(&mut edited);
+    std::fs::write(&path, edited.to_string()).unwrap();
+    let scenario = Path::new(run).join("scenario.toml");
+    std::fs::remove_file(&scenario).unwrap();
+    let (said, _) = ends(&["verify", run], 1);
+    assert!(said.contains("the limits of summary.json can't be held against"), "{said}");
 }
 
 /// Runs `verify` on a folder; returns its status and its JSON object.

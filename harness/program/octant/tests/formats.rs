@@ -276,7 +276,7 @@ fn a_bundle_and_results_in_a_part() {
     let name =
         std::fs::read_dir(parts.join("results")).unwrap().next().unwrap().unwrap().file_name();
     let mut bytes = std::fs::read(parts.join("results").join(&name)).unwrap();
-    bytes[8] = 2;
+    bytes[8] = 3;
     let hash = *blake3::hash(&bytes[..12]).as_bytes();
     bytes[12..16].copy_from_slice(&hash[..4]);
     let newer = folder.path().join("newer");

@@ -107,6 +107,20 @@ impl Bench {
         serde_json::from_str(&text.unwrap()).unwrap()
     }
 
+    /// Returns the account of the wire, after a check of its sum and of its copy in the manifest.
+    fn wire(&self, out: &str) -> Value {
+        let summary = self.summary(out);
+        let wire = summary["inputs"].as_array().unwrap().last().unwrap().clone();
+        let path = self.folder.path().join(out).join("manifest.json");
+        let manifest: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+        assert_eq!(manifest["accounts"], summary["inputs"]);
+        let link = &manifest["link"];
+        assert_eq!(wire["input"], format!("wire {}", link["port"].as_str().unwrap()));
+        let count = |name: &str| link[name].as_u64().unwrap();
+        assert_eq!(wire["read"], count("received") + count("damaged") + count("unreadable"));
+        wire
+    }
+
     /// Returns the stream hash of a run that must end well.
     fn hash(&self, out: &str, more: &[&str]) -> String {
         let output = self.run(&self.scenario, out, more);
@@ -128,6 +142,8 @@ fn ten_minutes_are_the_same_bits_in_process_and_over_every_port() {
         let words = [&["--endpoint", &served.uri], &patient[..]].concat();
         let found = bench.hash(&out, &words);
         assert_eq!(found, expected, "{endpoint}");
+        let wire = bench.wire(&out);
+        assert!(wire["read"] == wire["used"] && wire.get("missing").is_none(), "{wire}");
         let (status, said) = served.stop("-TERM");
         assert_eq!(status, Some(0), "{said}");
         assert!(said.contains("120000 steps, 0 repeated, 0 skipped, 0 damaged"), "{said}");
@@ -268,6 +284,11 @@ fn a_line_full_of_faults_gives_the_same_bits_and_receipts() {
         );
         let bench = Bench::new(&format!("{SHORT}{wire}"));
         assert_eq!(bench.hash("faulted", &[]), expected, "{endpoint}");
+        let wire = bench.wire("faulted");
+        let kinds_left = wire["left_out"].to_string();
+        assert!(kinds_left.contains("damaged messages"), "{wire}");
+        assert!(kinds_left.contains("a second time"), "{wire}");
+        assert!(wire["notes"].to_string().contains("requests sent again"), "{wire}");
         let summary = bench.summary("faulted");
         let receipts = summary["faults"].as_array().unwrap();
         assert_eq!(receipts.len(), kinds.len());

@@ -1,6 +1,7 @@
 //! Facts that a run or a campaign states about itself.
 
 use super::inputs::InputFacts;
+use super::maker::MadeBy;
 use super::signature::SigningKey;
 use octant_account::Account;
 use octant_operator::OperatorRecord;
@@ -88,6 +89,9 @@ pub struct CampaignFacts {
     pub results_blake3: String,
     /// SHA-256 of the program that wrote the report; `null` where it can't be read.
     pub program_sha256: Option<String>,
+    /// Who made the results: program, host and operator, with the number of results of each; empty in older manifests.
+    #[serde(default)]
+    pub made_by: Vec<MadeBy>,
     /// Verdict of the self-test in the folder; `null` without one.
     pub selftest: Option<Verdict>,
     /// Time of the file of the first result, UTC; `null` without one.

@@ -14,7 +14,10 @@ pub mod folder;
 mod host;
 mod inputs;
 pub mod leftover;
+pub mod maker;
 pub mod manifest;
+pub mod planned;
+mod program;
 pub mod signature;
 pub mod statements;
 

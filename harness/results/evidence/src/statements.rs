@@ -6,6 +6,7 @@
 
 use super::files;
 use super::manifest::Manifest;
+use super::planned::unplanned;
 use octant_recorder::reader::{Recording, stream_hash};
 use octant_scenario::Scenario;
 use octant_score::equipment;
@@ -20,6 +21,8 @@ use std::path::Path;
 
 /// Name of the summary of a run.
 pub const SUMMARY: &str = "summary.json";
+/// Name of the scenario of a run.
+pub const SCENARIO: &str = "scenario.toml";
 
 /// Statements of a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,6 +80,7 @@ pub fn of_run(folder: &Path, manifest: &Manifest) -> FolderStatements {
                         in_words(manifest.numerics)
                     ));
                 }
+                of_scenario(folder, &summary, &mut stated);
                 of_equipment(folder, manifest, &summary, &mut stated);
                 of_summary(folder, summary, &mut stated);
             }
@@ -94,6 +98,19 @@ pub fn of_run(folder: &Path, manifest: &Manifest) -> FolderStatements {
     stated
 }
 
+/// Holds the requirements, limits and decisions of a summary against the scenario beside it.
+fn of_scenario(folder: &Path, summary: &Summary, stated: &mut FolderStatements) {
+    match Scenario::load(&folder.join(SCENARIO), &[]) {
+        Ok(scenario) => {
+            let found = unplanned(&scenario, summary).into_iter();
+            stated.contradictions.extend(found.map(|what| format!("{SUMMARY}: {what}")));
+        }
+        Err(error) => stated.contradictions.push(format!(
+            "{SCENARIO}: {error}: the limits of {SUMMARY} can't be held against those that were planned"
+        )),
+    }
+}
+
 /// Checks the certificates in a manifest against its own date: the resulting findings must be in
 /// the summary.
 fn of_equipment(
@@ -102,8 +119,8 @@ fn of_equipment(
     summary: &Summary,
     stated: &mut FolderStatements,
 ) {
-    let scenario = Scenario::load(&folder.join("scenario.toml"), &[]);
-    // A scenario of an older form has no equipment; an unreadable one is reported elsewhere.
+    let scenario = Scenario::load(&folder.join(SCENARIO), &[]);
+    // A scenario of an older form has no equipment; an unreadable one is reported above.
     if let Ok(scenario) = scenario
         && scenario.equipment != manifest.equipment
     {

@@ -9,7 +9,9 @@ pub(super) fn inputs(summary: &Summary) -> Markup {
     html! { @for account in &summary.inputs { (input(account)) } }
 }
 
-fn input(account: &Account) -> Markup {
+/// Renders an account: its headline, and a table of its entries.
+#[must_use]
+pub fn input(account: &Account) -> Markup {
     let entries: Vec<(&str, &AccountEntry)> = account.entries().collect();
     html! {
         p { (account.headline()) "." }

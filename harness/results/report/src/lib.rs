@@ -23,7 +23,7 @@ pub mod fault_picture;
 pub mod filtered;
 mod gimbals;
 pub mod innovations;
-mod inputs;
+pub mod inputs;
 pub mod marks;
 mod pacing;
 pub mod page;

@@ -5,7 +5,10 @@ use super::place::RunPlace;
 use super::state::RunState;
 use super::tail::{PollEnd, Tail, TailError};
 use octant_evidence::ended;
+use octant_evidence::planned::unplanned;
+use octant_evidence::statements::SCENARIO;
 use octant_recorder::reader::Item;
+use octant_scenario::Scenario;
 use octant_score::judge::derive;
 use octant_score::rederive;
 use octant_score::summary::Summary;
@@ -166,7 +169,10 @@ impl Follow {
         // Files that are being written can't be read yet, and are read again.
         let mut summary = ended::summary(self.place.folder()).ok()??;
         // A verdict that contradicts the summary's numbers isn't shown.
-        let found = rederive::contradictions(&summary);
+        let mut found = rederive::contradictions(&summary);
+        if let Ok(scenario) = Scenario::load(&self.place.folder().join(SCENARIO), &[]) {
+            found.extend(unplanned(&scenario, &summary));
+        }
         if !found.is_empty() {
             summary.verdict = derive(&summary).verdict.worst(Verdict::Error);
             let told =

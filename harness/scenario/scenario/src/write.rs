@@ -4,7 +4,7 @@ use super::arguments::override_set;
 use super::derive::without_effect;
 use super::error::{Place, Problem};
 use super::keys::{Kind, SCENARIO, Section, key, keys_of};
-use super::model::{AlignmentSpec, MOTIONS, MotionSpec, Scenario};
+use super::model::{AlignmentSpec, MOTIONS, MotionSpec, RequirementSpec, Scenario};
 use super::quantity::UnitDimension;
 use super::resolve::DrawnValues;
 use octant_sample::further::FurtherGroup;
@@ -60,6 +60,32 @@ impl Scenario {
         );
         write_table(&document, SCENARIO, "", &mut out);
         out
+    }
+
+    /// Adds requirements, as a campaign does to its scenarios: they are judged, and written with the scenario.
+    pub fn require(&mut self, more: Vec<RequirementSpec>) {
+        let written = more.iter().map(|requirement| {
+            let RequirementSpec { check, text: sentence, limit_text: _, clause } = requirement;
+            let mut entries = vec![
+                ("id", text(check.id.clone())),
+                ("text", text(sentence.clone())),
+                ("measure", text(check.measure.clone())),
+                ("comparison", text(check.comparison.sign().to_owned())),
+                ("limit", Value::Number(check.limit)),
+            ];
+            entries.extend(clause.iter().map(|clause| ("clause", text(clause.clone()))));
+            node(table(entries))
+        });
+        let key = key!(requirements);
+        let mut all = match self.document.get(key).map(|node| &node.value) {
+            Some(Value::Array(all)) => all.clone(),
+            _ => Vec::new(),
+        };
+        all.extend(written);
+        if !all.is_empty() {
+            self.document.set(key, node(Value::Array(all)));
+        }
+        self.requirements.extend(more);
     }
 
     /// Writes the scenario as TOML with every default and with changes, `KEY=VALUE` as of `--set`. What is

@@ -8,6 +8,7 @@ use super::text::{estimate, rate_unit, title, unit};
 use maud::{Markup, html};
 use octant_base::number::{plain, significant};
 use octant_report::chart::{Band, Chart, Line, Role};
+use octant_report::inputs::input;
 use octant_report::page::{Section, page, sections};
 use octant_scenario::file_names::FileNames;
 
@@ -37,6 +38,7 @@ pub fn render(result: &Characterisation, command: &str) -> String {
             "provenance",
             "Provenance",
             html! {
+                @for account in &result.inputs { (input(account)) }
                 table { tbody { tr { td { "octant" } td.mono { (result.octant) } } } }
                 p.hint { "The same page again:" }
                 code.rerun { (command) }

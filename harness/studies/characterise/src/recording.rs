@@ -2,6 +2,7 @@
 
 use super::deviations::{CHANNELS, RateChannels};
 use super::error::CharacteriseError;
+use octant_account::Account;
 use octant_recorder::reader::Recording;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
@@ -64,6 +65,15 @@ pub struct RestingRecording {
     name: String,
     scenario: Scenario,
     names: FileNames,
+}
+
+/// Reports at the end of a recording.
+#[derive(Clone, Debug, Default)]
+pub struct RecordingEnd {
+    /// How it was cut short, if it was.
+    pub cut_short: Option<String>,
+    /// Accounts of what was read.
+    pub inputs: Vec<Account>,
 }
 
 /// A sample as rates.
@@ -249,14 +259,14 @@ impl RestingRecording {
         CharacteriseError::Recording { name: self.name.clone(), reason }
     }
 
-    /// Reads the recording from its first sample to its last; returns how it was cut short, if it was.
+    /// Reads the recording from its first sample to its last; returns how it ended.
     ///
     /// # Errors
     /// If it can't be read, or a stamp doesn't follow the one before.
     pub fn read(
         &self,
         mut take: impl FnMut(&RateSample),
-    ) -> Result<Option<String>, CharacteriseError> {
+    ) -> Result<RecordingEnd, CharacteriseError> {
         let mut source = self.open()?;
         let (mut epoch, command) = (Epoch::default(), GimbalCommand::default());
         let nominal_s = self.period_s();
@@ -289,7 +299,7 @@ impl RestingRecording {
             take(&RateSample { time_s: now as f64 * 1e-9, rates, follows, valid, temperature_c });
             before = Some(now);
         }
-        Ok(source.cut_short())
+        Ok(RecordingEnd { cut_short: source.cut_short(), inputs: source.accounts() })
     }
 }
 

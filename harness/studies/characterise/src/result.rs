@@ -8,6 +8,7 @@ use super::recording::RestingRecording;
 use super::survey::{RestStretch, survey};
 use super::temperature::{self, TemperatureDependence};
 use super::twin::{InstrumentTwin, compare, simulate};
+use octant_account::Account;
 use octant_scenario::file_names::FileNames;
 use serde::Serialize;
 
@@ -40,6 +41,8 @@ pub struct Characterisation {
     pub invalid: u64,
     /// How the recording was cut short.
     pub cut_short: Option<String>,
+    /// Accounts of what was read.
+    pub inputs: Vec<Account>,
     /// Attitudes and Earth's rate.
     pub earth_rate: EarthRateCheck,
     /// Biases against temperature.
@@ -101,6 +104,7 @@ pub fn characterise(
         gaps: survey.gaps,
         invalid: survey.invalid,
         cut_short: survey.cut_short,
+        inputs: survey.inputs,
         earth_rate: check(&stretches, &analysis, period_s),
         temperature,
         analysis,

@@ -10,8 +10,9 @@
 
 use super::deviations::{CHANNELS, RateChannels};
 use super::error::CharacteriseError;
-use super::recording::{RateSample, RestingRecording};
+use super::recording::{RateSample, RecordingEnd, RestingRecording};
 use nalgebra::Vector3;
+use octant_account::Account;
 use octant_base::number::{counted, plain};
 
 /// Standard deviation against that of the calmest fifth, above which a second isn't at rest.
@@ -55,6 +56,8 @@ pub struct RestSurvey {
     pub temperatures: u64,
     /// How the recording was cut short.
     pub cut_short: Option<String>,
+    /// Accounts of what was read.
+    pub inputs: Vec<Account>,
 }
 
 /// Place of a sample at rest.
@@ -143,7 +146,7 @@ pub fn survey(recording: &RestingRecording) -> Result<RestSurvey, CharacteriseEr
     let (mut seconds, mut sums) = (Vec::new(), Sums::default());
     let (mut samples, mut gaps, mut invalid, mut temperatures) = (0, 0, 0, 0);
     let mut follows = false;
-    let cut_short = recording.read(|sample| {
+    let RecordingEnd { cut_short, inputs } = recording.read(|sample| {
         samples += 1;
         temperatures += u64::from(sample.temperature_c.is_some());
         let is_gap = samples > 1 && !sample.follows;
@@ -186,7 +189,7 @@ pub fn survey(recording: &RestingRecording) -> Result<RestSurvey, CharacteriseEr
             counted(gaps, "gap", "gaps"),
         )));
     }
-    Ok(RestSurvey { stretches, samples, gaps, invalid, temperatures, cut_short })
+    Ok(RestSurvey { stretches, samples, gaps, invalid, temperatures, cut_short, inputs })
 }
 
 /// Finds the stretches at rest.

@@ -63,6 +63,15 @@ pub enum ExecuteError {
         /// Example of such a case.
         one: String,
     },
+    /// Another run works on the folder.
+    #[error(
+        "run {folder}: another octant campaign run works on it: wait for its end, or give each run a shard of its own, \
+         --shard K/N"
+    )]
+    Running {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// An existing result doesn't belong to its case, or contradicts itself.
     #[error(transparent)]
     Result(#[from] StatusError),
@@ -99,7 +108,7 @@ impl Failing for ExecuteError {
     fn kind(&self) -> FailureKind {
         match self {
             Self::Plan(error) => error.kind(),
-            Self::Foreign { .. } => FailureKind::Input,
+            Self::Foreign { .. } | Self::Running { .. } => FailureKind::Input,
             Self::Result(_)
             | Self::NotKept(_)
             | Self::Part(_)

@@ -6,6 +6,7 @@ pub mod case;
 mod execution;
 pub mod process;
 pub mod reexecute;
+mod running;
 pub mod selection;
 pub mod work;
 mod worker;
@@ -22,6 +23,7 @@ use crate::store::{CampaignResults, forget_errors};
 use alike::groups;
 use octant_base::pool::in_order_with;
 use process::TRIES;
+use running::Running;
 use selection::CaseSelection;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,6 +63,7 @@ pub fn execute(
     tell: &(dyn Fn(&ExecutionEvent) + Sync),
 ) -> Result<ExecutionSummary, ExecuteError> {
     plan.check_files()?;
+    let _running = Running::begin(options.folder, options.shard)?;
     let mut results = open(options.folder)?;
     refuse_foreign(plan, options.folder, &results)?;
     clean(options.folder);

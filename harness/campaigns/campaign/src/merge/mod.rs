@@ -13,6 +13,7 @@ use crate::plan::{Plan, short};
 use crate::table::{
     ColumnCursor, ColumnKind, ColumnValue, ExistingTable, TableError, write_streamed,
 };
+use octant_account::{Account, AccountEntry};
 use octant_base::failing::{Failing, FailureKind};
 use octant_verdict::Verdict;
 use results::{Columns, NUMERICS, TABLES, ordered};
@@ -97,7 +98,7 @@ impl Failing for MergeError {
 }
 
 /// Summary of a merge.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     /// Number of parts.
     pub parts: usize,
@@ -105,6 +106,8 @@ pub struct Merged {
     pub cases: usize,
     /// Cases of the plan without a result.
     pub missing: usize,
+    /// Account of the results in the parts: each is used, or left out.
+    pub account: Account,
 }
 
 /// Lists the parts in some folders, in order of their names.
@@ -204,7 +207,8 @@ pub fn merge(
 ) -> Result<Merged, MergeError> {
     check_parts(plan, folders)?;
     let place = CasePlaces::of(plan);
-    let mut merged_cases = Merged { parts: 0, cases: 0, missing: 0 };
+    let account = Account::new("results of the parts", ["result", "results"]);
+    let mut merged_cases = Merged { parts: 0, cases: 0, missing: 0, account };
     for (name, first) in TABLES {
         let paths = parts(folders, name);
         if paths.is_empty() {
@@ -226,6 +230,7 @@ pub fn merge(
         let rows = Merging::of(&tables);
         let columns = columns(first, &tables);
         rows.refuse_differing(plan, &tables, &columns)?;
+        let counts = rows.counts(end);
         // If several parts contain a case, the rows of the first are used.
         let kept = rows.kept(end);
         // A column whose cases don't count is left out.
@@ -242,11 +247,10 @@ pub fn merge(
         }
         if name == "cases" {
             let cases = kept.iter().map(|kept| kept.rows.count()).sum();
-            merged_cases = Merged {
-                parts: paths.len(),
-                cases,
-                missing: end.min(plan.cases.len()).saturating_sub(cases),
-            };
+            let missing = end.min(plan.cases.len()).saturating_sub(cases);
+            let account = merged_cases.account;
+            let account = counts.into_account(account, paths.len(), missing as u64);
+            merged_cases = Merged { parts: paths.len(), cases, missing, account };
         }
         let mut units = BTreeMap::new();
         tables.iter().for_each(|table| units.extend(table.table.units.clone()));
@@ -325,6 +329,31 @@ impl Rows {
     }
 }
 
+/// Rows of the table of cases, by what becomes of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct RowCounts {
+    used: u64,
+    again: u64,
+    after: u64,
+}
+
+impl RowCounts {
+    fn into_account(self, account: Account, parts: usize, missing: u64) -> Account {
+        let Self { used, again, after } = self;
+        let again =
+            AccountEntry::new(again, "results that another part has too, with equal values");
+        account
+            .used(used)
+            .left_out(again)
+            .left_out(AccountEntry::new(
+                after,
+                "results after the point at which the campaign stopped",
+            ))
+            .missing(AccountEntry::new(missing, "results of cases of the plan"))
+            .note(AccountEntry::new(parts as u64, "parts"))
+    }
+}
+
 /// Rows of all parts, by case in the order of the plan and by part.
 struct Merging(Vec<Rows>);
 
@@ -341,6 +370,25 @@ impl Merging {
     /// Returns the rows of each case.
     fn cases(&self) -> impl Iterator<Item = &[Rows]> {
         self.0.chunk_by(|a, b| a.rows.case() == b.rows.case())
+    }
+
+    /// Counts the rows by what becomes of them.
+    fn counts(&self, end: usize) -> RowCounts {
+        let mut counts = RowCounts::default();
+        for of_case in self.cases() {
+            let first = of_case.first().map(|rows| rows.part);
+            for rows in of_case {
+                let to = if rows.rows.case() >= end {
+                    &mut counts.after
+                } else if Some(rows.part) == first {
+                    &mut counts.used
+                } else {
+                    &mut counts.again
+                };
+                *to += rows.rows.count() as u64;
+            }
+        }
+        counts
     }
 
     /// Returns the rows that count: of a case in several parts those of the first.

@@ -4,7 +4,7 @@ use super::case_id::CaseId;
 use super::error::{PlanError, short, system};
 use super::factor_values::FactorValues;
 use super::shared::{SharedText, SharedTexts};
-use octant_scenario::{FilePlaces, Scenario};
+use octant_scenario::{FilePlaces, RequirementSpec, Scenario};
 use octant_verdict::verdict::LimitCheck;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -125,18 +125,23 @@ impl PlannedScenario {
         self.files.iter().map(|(name, planned)| (name.clone(), planned.file.clone())).collect()
     }
 
+    /// Returns the requirements that the campaign adds to those of the scenario.
+    #[must_use]
+    pub fn required(&self) -> Vec<RequirementSpec> {
+        let required = |check: &LimitCheck| RequirementSpec {
+            check: check.clone(),
+            text: format!("{} {} {}", check.measure, check.comparison.sign(), check.limit),
+            limit_text: check.limit.to_string(),
+            clause: None,
+        };
+        self.checks.iter().map(required).collect()
+    }
+
     /// Returns the scenario of a case without a check of its file.
     pub(crate) fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
         let mut scenario =
             Scenario::load_placed(&self.file, &case.set.to_strings(), &[], &self.places())?;
-        scenario.requirements.extend(self.checks.iter().map(|check| {
-            octant_scenario::RequirementSpec {
-                check: check.clone(),
-                text: String::new(),
-                limit_text: check.limit.to_string(),
-                clause: None,
-            }
-        }));
+        scenario.require(self.required());
         let Some(faults) = &case.faults else { return Ok(scenario) };
         scenario
             .with_only(&faults.to_strings())

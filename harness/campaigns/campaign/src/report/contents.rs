@@ -9,16 +9,18 @@ use super::requirement::RequirementFigures;
 use super::rows::ReportRows;
 use super::selftest::SelfTest;
 use super::units::CampaignUnits;
-use super::{about, discrepancy, figures, requirement, rows, selftest, tables};
+use super::{about, discrepancy, figures, makers, requirement, rows, selftest, tables};
 use crate::against::{Against, Selection, against_by};
 use crate::execute::{Shard, refuse_foreign};
 use crate::judge::status::{self, CampaignStatus, StatusError};
 use crate::judge::trace::first_by;
 use crate::plan::Plan;
 use crate::store::CampaignResults;
+use octant_account::Account;
 use octant_base::display::UnitChoice;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_evidence::disposition::{self, Dispositions};
+use octant_evidence::maker::MadeBy;
 use octant_evidence::manifest::shell_line;
 use octant_verdict::Verdict;
 use octant_verdict::requirement::Requirements;
@@ -78,6 +80,8 @@ pub struct Statistics {
     pub outliers: Vec<OutlierFigures>,
     /// Discrepancies with their dispositions.
     pub discrepancies: Vec<Discrepancy>,
+    /// Accounts of what came in: the results of the cases, whichever host they came from.
+    pub inputs: Vec<Account>,
 }
 
 /// Predicts the ensembles by linear theory, and compares them with the cases. This needs the files
@@ -113,6 +117,8 @@ pub struct CampaignReport<'a> {
     pub about: Requirements,
     /// Trace from requirements to their first cases and back.
     pub trace: CampaignTrace,
+    /// Who made the results.
+    pub made_by: Vec<MadeBy>,
     /// The self-test of the program.
     pub selftest: Option<SelfTest>,
     /// Notes about missing parts.
@@ -173,6 +179,8 @@ impl<'a> CampaignReport<'a> {
         let (tables, mut wrong) = tables::look(plan, folder, &results, run)?;
         let run_between = run_between(&rows, &results);
         let prediction = predicted(plan, &results);
+        let inputs = vec![results.account(plan, end)?];
+        let made_by = results.made_by(plan, end);
         // The figures need the rows alone, and most of the memory.
         drop(results);
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {
@@ -182,6 +190,7 @@ impl<'a> CampaignReport<'a> {
         if let Some(test) = selftest.as_ref().filter(|test| test.verdict != Verdict::Pass) {
             wrong.push(format!("the self-test of the program came to {}", test.verdict.name()));
         }
+        wrong.extend(makers::wrong(&made_by, selftest.as_ref()));
         let mut of_combinations: Vec<CombinationFigures> = combinations
             .iter()
             .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
@@ -206,6 +215,7 @@ impl<'a> CampaignReport<'a> {
             combinations: of_combinations,
             outliers: figures::standing_out(&combinations, &rows),
             discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
+            inputs,
         };
         check(&rows)?;
         let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
@@ -222,6 +232,7 @@ impl<'a> CampaignReport<'a> {
             dispositions,
             about,
             trace,
+            made_by,
             selftest,
             notes,
             tables,

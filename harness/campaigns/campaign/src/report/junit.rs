@@ -67,7 +67,9 @@ pub fn junit(report: &CampaignReport<'_>, to: impl io::Write) -> io::Result<()> 
 }
 
 fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>, class: &str) -> Vec<JunitCase> {
-    let id = &row.case.id;
+    // The id of a case is another one after any change of its scenario.
+    let case = format!("replicate {}", row.case.replicate);
+    let id = row.case.id.to_string();
     let mut all = Vec::new();
     for requirement in &report.statistics.requirements {
         let Some(verdict) = checks_of(report.plan, row, &requirement.id) else { continue };
@@ -81,9 +83,9 @@ fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>, class: &str) -> Vec
             (None, Some(_)) => "it was not checked".to_owned(),
         };
         all.push(JunitCase {
-            name: format!("{id}: {}", requirement.id),
+            name: format!("{case}: {}", requirement.id),
             class: class.to_owned(),
-            properties: vec![("verifies", requirement.id.clone())],
+            properties: vec![("verifies", requirement.id.clone()), ("case", id.clone())],
             verdict: verdict.unwrap_or(Verdict::Inconclusive),
             message: found,
         });
@@ -99,9 +101,9 @@ fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>, class: &str) -> Vec
         ),
     };
     all.push(JunitCase {
-        name: format!("{id}: case"),
+        name: format!("{case}: case"),
         class: class.to_owned(),
-        properties: vec![("seed", row.case.seed.to_string())],
+        properties: vec![("case", id), ("seed", row.case.seed.to_string())],
         verdict,
         message,
     });

@@ -17,6 +17,7 @@ mod error;
 pub mod figures;
 pub mod file_names;
 pub mod junit;
+mod makers;
 mod outcome;
 pub mod requirement;
 mod row_bytes;

@@ -2,9 +2,10 @@
 
 use super::error::{PartError, ResultPlace};
 use super::facts::CaseFacts;
-use super::frame::{Checksum, RecordKind, first};
-use super::scan::{Found, hex, read_checksum, read_head, read_whole, scan};
-use super::stored::{Stored, StoredFile, StoredId, StoredRecord, read_file};
+use super::frame::{Checksum, first};
+use super::part::{Part, ScannedPart, place_in};
+use super::scan::{hex, read_checksum, read_head, read_whole};
+use super::stored::{NotCounted, Stored, StoredFile, StoredId, StoredRecord, read_file};
 use super::writer::{EXTENSION, FOLDER};
 use crate::execute::case::{CaseResult, ResultError};
 use crate::plan::{Case, Plan};
@@ -27,45 +28,16 @@ pub struct CampaignResults {
     parts: Vec<Part>,
     /// Results by the ids of their cases, those of a case in the order in which they count: a list, as a
     /// campaign can have millions.
-    stored: Vec<(StoredId, Stored)>,
+    pub(super) stored: Vec<(StoredId, Stored)>,
     /// Beginning of the BLAKE3 of each result that was found consistent, in the order of `stored`; 0 for one that was
     /// not checked yet. A command reads a result several times, and a check takes most of the time.
     consistent: Vec<AtomicU64>,
     /// Number of cases that have a result.
     cases: usize,
-}
-
-/// A part file, open if there are few of them.
-#[derive(Debug)]
-struct Part {
-    path: PathBuf,
-    file: Option<File>,
-}
-
-/// A part file with its results, and those of its records that don't count any more.
-struct ScannedPart {
-    part: Part,
-    stored: Vec<(StoredId, Stored)>,
-    forgotten: Vec<(Box<str>, Checksum)>,
-}
-
-impl ScannedPart {
-    /// Reads the heads of all records of a part, the part by its number.
-    fn of(path: &Path, part: u32, stays_open: bool) -> Result<Self, ResultError> {
-        let (mut stored, mut forgotten) = (Vec::new(), Vec::new());
-        let file = File::open(path).map_err(PartError::system("read", path))?;
-        scan(path, &file, |Found { head, offset, .. }| {
-            if head.kind == RecordKind::Forgotten {
-                forgotten.push((head.case.into_boxed_str(), first(&head.blake3)));
-                return;
-            }
-            let has_facts = !head.facts.is_empty();
-            let record = StoredRecord { time_ns: head.time_ns, part, offset, has_facts };
-            stored.push((head.case.as_str().into(), Stored::Record(record)));
-        })?;
-        let part = Part { path: path.to_owned(), file: stays_open.then_some(file) };
-        Ok(Self { part, stored, forgotten })
-    }
+    /// Records that count no more, or never did.
+    pub(super) not_counted: NotCounted,
+    /// Makers of the records, as they are stored.
+    pub(super) makers: Vec<Vec<u8>>,
 }
 
 /// Bytes of a result.
@@ -96,6 +68,8 @@ impl CampaignResults {
         let mut parts = Vec::with_capacity(paths.len());
         let stays_open = paths.len() <= OPEN_MAX;
         let mut forgotten: BTreeMap<Box<str>, BTreeSet<Checksum>> = BTreeMap::new();
+        let mut not_counted = NotCounted::default();
+        let mut makers = Vec::new();
         let read = |(): &mut (), part: usize| {
             let number = u32::try_from(part).unwrap_or(u32::MAX);
             paths.get(part).map(|path| ScannedPart::of(path, number, stays_open)).transpose()
@@ -106,8 +80,16 @@ impl CampaignResults {
             || (),
             read,
             |found| {
-                let Some(found) = found else { return Ok(()) };
+                let Some(mut found) = found else { return Ok(()) };
+                let places: Vec<u16> =
+                    found.makers.drain(..).map(|maker| place_in(&mut makers, maker)).collect();
+                for (_, stored) in &mut found.stored {
+                    if let Stored::Record(record) = stored {
+                        record.maker = places.get(usize::from(record.maker)).copied().unwrap_or(0);
+                    }
+                }
                 parts.push(found.part);
+                not_counted.torn += u64::from(found.is_torn);
                 if stored.is_empty() {
                     stored = found.stored;
                 } else {
@@ -129,7 +111,8 @@ impl CampaignResults {
             // In place: there can be millions.
             stored.sort_unstable_by(order);
         }
-        let mut found = Self { parts, stored, consistent: Vec::new(), cases: 0 };
+        let mut found =
+            Self { parts, stored, consistent: Vec::new(), cases: 0, not_counted, makers };
         found.forget(&forgotten)?;
         found.consistent.resize_with(found.stored.len(), AtomicU64::default);
         Ok(found)
@@ -161,6 +144,7 @@ impl CampaignResults {
             }
             from += of_case.len();
         }
+        self.not_counted.taken_back = gone.len() as u64;
         let mut index = 0;
         if !gone.is_empty() {
             self.stored.retain(|_| {
@@ -173,7 +157,7 @@ impl CampaignResults {
     }
 
     /// Returns the places of the results of a case.
-    fn range(&self, case: &str) -> Range<usize> {
+    pub(super) fn range(&self, case: &str) -> Range<usize> {
         let case = StoredId::from(case);
         let from = self.stored.partition_point(|(other, _)| *other < case);
         let rest = self.stored.get(from..).unwrap_or_default();
@@ -181,7 +165,7 @@ impl CampaignResults {
     }
 
     /// Returns the results of a case.
-    fn of(&self, case: &str) -> &[(StoredId, Stored)] {
+    pub(super) fn of(&self, case: &str) -> &[(StoredId, Stored)] {
         self.stored.get(self.range(case)).unwrap_or_default()
     }
 
@@ -356,7 +340,7 @@ impl CampaignResults {
     }
 
     /// BLAKE3 of a result. It isn't kept: few cases have more than one.
-    fn blake3(&self, stored: &Stored) -> Result<[u8; 32], ResultError> {
+    pub(super) fn blake3(&self, stored: &Stored) -> Result<[u8; 32], ResultError> {
         match stored {
             Stored::File(file) => Ok(*blake3::hash(&read_file(&file.path)?).as_bytes()),
             Stored::Record(record) => Ok(self.at(record, read_head)?.blake3),
@@ -377,7 +361,7 @@ impl CampaignResults {
     }
 
     /// The result that counts, with its place among all.
-    fn main_at(&self, case: &str) -> Option<(usize, &Stored)> {
+    pub(super) fn main_at(&self, case: &str) -> Option<(usize, &Stored)> {
         let mut all = self.range(case).filter_map(|at| Some((at, &self.stored.get(at)?.1)));
         all.find(|(_, stored)| !stored.is_beside())
     }

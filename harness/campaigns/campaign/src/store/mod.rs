@@ -5,12 +5,14 @@
 //! versions, one for each result: `cases/xx/ID.json`. Nothing stored is ever changed: a later record
 //! names a result that doesn't count any more. The [facts](facts::CaseFacts) of a result are stored beside it.
 
+mod account;
 pub mod error;
 pub mod facts;
 mod frame;
 pub(crate) mod in_plan_order;
 mod index;
 mod keep;
+mod part;
 pub(crate) mod result_error;
 mod scan;
 pub mod segment;

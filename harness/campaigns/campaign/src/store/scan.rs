@@ -7,7 +7,7 @@
 
 use super::error::PartError;
 use super::frame::{
-    self, CHECK, Checksum, FILE_HEAD, FIXED, FileHead, Lengths, MARKER, RecordHead, checksum,
+    self, CHECK, Checksum, FILE_HEAD, FIXED, FileHead, MARKER, RecordHead, SCHEMA, checksum,
     read_file_head,
 };
 use std::fs::File;
@@ -38,6 +38,8 @@ pub(super) struct Scanned {
     pub(super) end: u64,
     /// Length of the file.
     pub(super) bytes: u64,
+    /// Version of the file.
+    pub(super) version: u32,
 }
 
 /// Reads the heads of all records, and calls `each` with them. Only the content of the last one is
@@ -62,9 +64,10 @@ pub(super) fn scan_from(
     let mut reader = Source::of(file, bytes);
     let mut first = vec![0; FILE_HEAD.min(usize::try_from(bytes).unwrap_or(FILE_HEAD))];
     reader.exact(0, &mut first).map_err(system)?;
+    let version;
     match read_file_head(&first) {
-        FileHead::Whole => {}
-        FileHead::Torn => return Ok(Scanned { end: 0, bytes }),
+        FileHead::Whole(found) => version = found,
+        FileHead::Torn => return Ok(Scanned { end: 0, bytes, version: SCHEMA }),
         FileHead::Version(found) => {
             return Err(PartError::Version { path: path.to_owned(), found });
         }
@@ -84,7 +87,7 @@ pub(super) fn scan_from(
             }
         }
     }
-    Ok(Scanned { end, bytes })
+    Ok(Scanned { end, bytes, version })
 }
 
 /// Reads the head of the record at a byte of a file.
@@ -241,8 +244,7 @@ impl Source<'_> {
         }
         self.exact(at, &mut fixed)?;
         let Some(lengths) = frame::lengths(&fixed) else { return Ok(None) };
-        let Lengths { case, facts } = lengths;
-        let mut named = vec![0; case + facts + CHECK];
+        let mut named = vec![0; lengths.named() + CHECK];
         if rest - (FIXED as u64) < named.len() as u64 {
             return Ok(None);
         }

@@ -30,6 +30,8 @@ pub(super) struct StoredRecord {
     pub(super) part: u32,
     pub(super) offset: u64,
     pub(super) has_facts: bool,
+    /// Place of its maker in the list of the folder's.
+    pub(super) maker: u16,
 }
 
 /// Id of a case as a record has it: that of a planned case, or any other text. The ids of planned cases come first.
@@ -75,4 +77,13 @@ impl Stored {
 /// Reads a result that has a file of its own.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, ResultError> {
     std::fs::read(path).map_err(|source| ResultError::System { path: path.to_owned(), source })
+}
+
+/// Records of the parts that hold no result that counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct NotCounted {
+    /// Results that a later record takes back.
+    pub(super) taken_back: u64,
+    /// Parts whose last record was never completed.
+    pub(super) torn: u64,
 }

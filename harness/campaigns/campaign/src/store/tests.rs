@@ -140,7 +140,7 @@ fn a_newer_version_is_refused_in_words() {
     let mut bytes = file_head(SCHEMA + 1).to_vec();
     bytes.extend(&SAMPLE.bytes[FILE_HEAD..]);
     let told = CampaignResults::open(folder_of(&bytes).path()).unwrap_err().to_string();
-    assert!(told.contains("found version 2") && told.contains("a newer Octant wrote it"), "{told}");
+    assert!(told.contains("found version 3") && told.contains("a newer Octant wrote it"), "{told}");
 }
 
 #[test]
@@ -261,6 +261,77 @@ fn a_copied_part_counts_once() {
     assert_eq!((again.len(), again.differing("c3").unwrap()), (5, None));
     let (result, _) = again.result("c3").unwrap().unwrap();
     assert_eq!(result.error.as_deref(), Some("now"));
+}
+
+/// What two workers store, in any order: each record is in exactly one place of the account.
+#[derive(Clone, Copy, Debug)]
+enum Stored {
+    Result { case: usize, which: usize },
+    TakeBack { case: usize },
+}
+
+fn stored() -> impl Strategy<Value = Vec<Stored>> {
+    let result = (0..6_usize, 0..2_usize).prop_map(|(case, which)| Stored::Result { case, which });
+    let take_back = (0..6_usize).prop_map(|case| Stored::TakeBack { case });
+    proptest::collection::vec(prop_oneof![4 => result, 1 => take_back], 0..24)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Cases 0 to 3 count, 4 is after the end, and 5 isn't planned.
+    #[test]
+    fn each_stored_result_is_in_one_place_of_the_account(all in stored(), is_torn: bool) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writers = ["1-of-2", "2-of-2"].map(|name| PartWriter::new(folder.path(), name));
+        // Results that count, by case, in their order; and how many were taken back.
+        let (mut kept, mut taken_back) = (vec![Vec::new(); 6], 0);
+        for (number, stored) in all.iter().enumerate() {
+            match *stored {
+                Stored::Result { case, which } => {
+                    let id = format!("c{case}");
+                    // An error that was taken back would take its equals with it: each time has its own text.
+                    let text = broken(&id, &format!("{which} after {taken_back}"));
+                    put(&mut writers[number % 2], &id, &text);
+                    kept[case].push(text);
+                }
+                Stored::TakeBack { case } => {
+                    let results = CampaignResults::open(folder.path()).unwrap();
+                    let id = format!("c{case}");
+                    forget_errors(&results, &mut writers[number % 2], [&*id].into_iter()).unwrap();
+                    taken_back += kept[case].len() as u64;
+                    kept[case].clear();
+                }
+            }
+        }
+        if is_torn {
+            let path = put(&mut writers[0], "c0", &broken("c0", "torn")).path().to_owned();
+            let length = std::fs::metadata(&path).unwrap().len();
+            std::fs::File::options().write(true).open(&path).unwrap().set_len(length - 3).unwrap();
+        }
+        let results = CampaignResults::open(folder.path()).unwrap();
+        let place = |id: &str| id.strip_prefix('c')?.parse::<usize>().ok().filter(|case| *case < 5);
+        let cases = ["c0", "c1", "c2", "c3"];
+        let account = results.account_of(place, cases.into_iter(), 4).unwrap();
+        let count = |kind: &str| {
+            account.entries().find(|(_, entry)| entry.kind.starts_with(kind)).map_or(0, |(_, e)| e.count)
+        };
+        let planned = &kept[..5];
+        let again = |equal: bool| -> u64 {
+            planned.iter().map(|of| of.iter().skip(1).filter(|text| (**text == of[0]) == equal).count() as u64).sum()
+        };
+        let records = kept.iter().map(|of| of.len() as u64).sum::<u64>();
+        prop_assert_eq!(account.read(), records + taken_back + u64::from(is_torn));
+        let used = kept[..4].iter().filter(|of| !of.is_empty()).count() as u64;
+        prop_assert_eq!(account.used_count(), used);
+        prop_assert_eq!(account.missing_count(), 4 - used);
+        prop_assert_eq!(count("results that came again"), again(true));
+        prop_assert_eq!(count("other results"), again(false));
+        prop_assert_eq!(count("results after"), u64::from(!kept[4].is_empty()));
+        prop_assert_eq!(count("results of cases that"), kept[5].len() as u64);
+        prop_assert_eq!(count("results that a later"), taken_back);
+        prop_assert_eq!(count("results of which"), u64::from(is_torn));
+    }
 }
 
 /// Results of a program whose numbers aren't finite are no results: no facts stand for them.

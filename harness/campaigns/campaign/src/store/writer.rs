@@ -1,8 +1,11 @@
 //! Appends records to a part file that no other writer has.
 
 use super::error::{PartError, ResultPlace};
-use super::frame::{Checksum, FACTS_MAX, NewRecord, RecordKind, SCHEMA, file_head, record};
+use super::frame::{
+    Checksum, FACTS_MAX, MADE_BY, NewRecord, RecordKind, SCHEMA, file_head, record,
+};
 use super::scan::scan;
+use octant_evidence::maker::Maker;
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -77,6 +80,7 @@ impl PartWriter {
             kind: RecordKind::Result,
             case,
             facts,
+            maker: Maker::bytes_of_this(),
             body: &body,
             raw_bytes: bytes.len(),
             time_ns: now_ns(),
@@ -92,6 +96,7 @@ impl PartWriter {
             kind: RecordKind::Forgotten,
             case,
             facts: &[],
+            maker: Maker::bytes_of_this(),
             body: &[],
             raw_bytes: 0,
             time_ns: now_ns(),
@@ -151,17 +156,21 @@ impl PartWriter {
                 Some(Err(TryLockError::WouldBlock)) => false,
                 Some(Err(TryLockError::Error(_))) | None => is_new,
             };
-            if is_free {
-                return open_at_end(path, file);
+            // A part of an older program stays as it is.
+            if is_free && let Some(open) = open_at_end(path, file)? {
+                return Ok(open);
             }
         }
         Err(create(&self.folder)(ErrorKind::AlreadyExists.into()))
     }
 }
 
-/// Cuts off a torn end, and goes to the end.
-fn open_at_end(path: PathBuf, mut file: File) -> Result<OpenPart, PartError> {
+/// Cuts off a torn end, and goes to the end; `None` for a part of a version whose records don't tell who made them.
+fn open_at_end(path: PathBuf, mut file: File) -> Result<Option<OpenPart>, PartError> {
     let mut found = scan(&path, &file, |_| {})?;
+    if found.version < MADE_BY {
+        return Ok(None);
+    }
     let write = |path: &Path| PartError::system("write", path);
     if found.end == 0 {
         file.set_len(0).map_err(write(&path))?;
@@ -173,7 +182,7 @@ fn open_at_end(path: PathBuf, mut file: File) -> Result<OpenPart, PartError> {
         file.set_len(found.end).map_err(PartError::system("cut off the end of", &path))?;
     }
     file.seek(SeekFrom::Start(found.end)).map_err(write(&path))?;
-    Ok(OpenPart { path, file, end: found.end })
+    Ok(Some(OpenPart { path, file, end: found.end }))
 }
 
 fn now_ns() -> u64 {

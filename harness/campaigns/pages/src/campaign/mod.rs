@@ -18,6 +18,7 @@ use elements::{SECTIONS, heading, short};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_campaign::report::{CampaignReport, again};
+use octant_report::inputs::input;
 use octant_report::page::{badge, page};
 use octant_verdict::Verdict;
 
@@ -177,6 +178,7 @@ fn provenance(report: &CampaignReport<'_>) -> Markup {
                 }
             }
         }
+        @for account in &report.statistics.inputs { (input(account)) }
         @if report.tables.is_empty() {
             p.hint { "The tables have not been merged: octant campaign merge makes cases.parquet, \
                 checks.parquet and drift.parquet." }

@@ -1,6 +1,7 @@
 //! Ends of a run's loop, planned ones and failures, with the reports of the bench's parts.
 
 use super::unit::UnitEventError;
+use super::wire_account::wire_account;
 use octant_account::Account;
 use octant_base::failing::{Failing, FailureKind};
 use octant_endpoint::EndpointError;
@@ -132,4 +133,13 @@ pub struct BenchEnd {
     pub instrument: Option<Box<BenchRecord>>,
     /// Switchings of the device's power; as in the recording.
     pub power: Option<Box<PowerRecord>>,
+}
+
+impl BenchEnd {
+    /// Lists the accounts of all that came from outside: what the source read, then what a unit sent over its wire.
+    #[must_use]
+    pub fn accounts(&self) -> Vec<Account> {
+        let wire = self.link.as_deref().map(wire_account);
+        self.inputs.iter().cloned().chain(wire).collect()
+    }
 }

@@ -17,6 +17,7 @@ pub(crate) mod records;
 pub(crate) mod set_up;
 pub mod steps;
 pub mod unit;
+mod wire_account;
 
 pub use records::Records;
 

@@ -169,7 +169,7 @@ pub fn assemble_with(
         decision: Some(decision),
         planned: Some(planned),
         done: Some(done),
-        inputs: std::mem::take(&mut primary.bench.inputs),
+        inputs: primary.bench.accounts(),
         faults: results(&primary.receipts),
         altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreamSummary::from),
         method: primary.label.clone(),

@@ -3,7 +3,7 @@
 use super::planned::read;
 use crate::failure::Failure;
 use crate::place::{CampaignPlace, Needs};
-use crate::terminal::print;
+use crate::terminal::{print, tell_account};
 use octant_base::number::counted;
 use octant_campaign::execute::Shard;
 use octant_campaign::merge::results;
@@ -32,6 +32,7 @@ pub(super) fn command(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Fail
     let end = merge::end(&plan, &folders)?;
     let merged = merge::merge(&plan, &folders, folder, end)?;
     place.put_back()?;
+    tell_account(&merged.account);
     let missing = match merged.missing {
         0 => String::new(),
         missing => format!(", {missing} without a result yet"),

@@ -179,6 +179,7 @@ impl From<ExecuteError> for Failure {
             ExecuteError::Plan(error) => error.into(),
             ExecuteError::NotKept(_) | ExecuteError::Result(_) => failure,
             ExecuteError::Foreign { .. }
+            | ExecuteError::Running { .. }
             | ExecuteError::Ended { .. }
             | ExecuteError::System { .. }
             | ExecuteError::Part(_) => failure.failed(),
@@ -317,7 +318,9 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
     // Checks that the scenario is the planned one.
     planned.scenario(case)?;
     let out = out.map_or_else(|| Path::new("runs").join(format!("case-{id}")), Path::to_owned);
-    crate::evidenced::case(planned, case, &out)
+    let words = ["octant", "campaign", "case", &place.shown(place.folder()), id];
+    let line = words.map(str::to_owned).to_vec();
+    crate::evidenced::case(line, planned, case, &out)
 }
 
 /// Prints the stored result of a case as it is.

@@ -4,7 +4,7 @@ use super::planned::read;
 use crate::failure::Failure;
 use crate::place::{CampaignPlace, Needs};
 use crate::signing::signing_key;
-use crate::terminal::{print, write};
+use crate::terminal::{print, tell_account, write};
 use clap::Args;
 use octant_base::display::UnitChoice;
 use octant_campaign::report::file_names::PAGE;
@@ -54,6 +54,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             folder.join(PAGE)
         }
     };
+    report.statistics.inputs.iter().for_each(tell_account);
     let found = report.statistics.discrepancies.len();
     let verdict = report.statistics.verdict;
     print(&format!(

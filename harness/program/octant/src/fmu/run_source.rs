@@ -3,7 +3,8 @@
 use super::super::progress::with_progress;
 use super::arguments::{Interface, OpeningArguments, Process, SharedRunOptions, in_the_way};
 use crate::failure::Failure;
-use crate::terminal::{print, print_json};
+use crate::terminal::{print, print_json, tell_account};
+use octant_account::Account;
 use octant_base::control::Control;
 use octant_base::number::counted;
 use octant_run::run_as_far_as_it_goes;
@@ -26,6 +27,9 @@ struct RunSummary {
     stream_hash: String,
     wall_s: f64,
     out: Option<PathBuf>,
+    /// Accounts of what the source read.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    inputs: Vec<Account>,
 }
 
 /// Runs the command.
@@ -81,7 +85,9 @@ pub(super) fn command(kept: &SharedRunOptions<'_>, scenario: &Path) -> Result<Ve
         stream_hash: run.recorder.stream_hash.clone(),
         wall_s,
         out: out.map(Path::to_owned),
+        inputs: run.bench.accounts(),
     };
+    summary.inputs.iter().for_each(tell_account);
     if json {
         print_json(&summary)?;
     } else {
@@ -93,6 +99,7 @@ pub(super) fn command(kept: &SharedRunOptions<'_>, scenario: &Path) -> Result<Ve
     Ok(match run.ended {
         Ended::Refused | Ended::Misbehaved => Verdict::Fail,
         Ended::Cancelled | Ended::Lost => Verdict::Inconclusive,
+        _ if summary.inputs.iter().any(|input| !input.doubts().is_empty()) => Verdict::Inconclusive,
         _ => Verdict::Pass,
     })
 }

@@ -58,6 +58,13 @@ fn a_bundle_runs_where_no_file_of_its_campaign_is() {
         let stored: serde_json::Value = serde_json::from_str(&stored).unwrap();
         let run = json(&bench.at(&out).join("summary.json"));
         assert_eq!(run["stream_hash"], stored["summary"]["stream_hash"]);
+        // The requirements of the campaign too, and their results.
+        assert_eq!(run["requirements"], stored["summary"]["requirements"]);
+        assert!(!run["requirements"].as_array().unwrap().is_empty());
+        let manifest = json(&bench.at(&out).join("manifest.json"));
+        let again = ["octant", "campaign", "case", cert, &*case.id];
+        assert_eq!(manifest["command_line"], serde_json::json!(again));
+        bench.octant(&["verify", &out], 0);
         // The resolved scenario names files that are there.
         let resolved = bench.at(&out).join("scenario.toml");
         let twice = bench.at(&out).join("again");

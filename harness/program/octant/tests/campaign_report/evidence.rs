@@ -146,7 +146,9 @@ fn every_change_of_the_folder_is_found() {
 fn the_self_test_is_shown_and_bound() {
     let (bench, _, out) = Bench::filled(CAMPAIGN, |_, _, _| {});
     let path = out.join("selftest.json");
-    let test = json!({"schema": 1, "verdict": "fail", "program_sha256": "ab".repeat(32),
+    // This process has stored the results.
+    let program = octant_evidence::manifest::program_sha256().unwrap();
+    let test = json!({"schema": 1, "verdict": "fail", "program_sha256": program,
                       "at": "2026-01-02T03:04:05Z", "cases": []});
     for (text, words) in [
         (test.to_string(), "the self-test of the program came to fail"),
@@ -162,9 +164,24 @@ fn the_self_test_is_shown_and_bound() {
     std::fs::write(&path, test.to_string().replace("fail", "pass")).unwrap();
     assert_eq!(bench.report().0, 0);
     let (page, manifest) = (bench.read("report.html"), bench.read("manifest.json"));
-    assert!(page.contains("pass, 2026-01-02T03:04:05Z") && page.contains(&"ab".repeat(32)));
+    assert!(page.contains("pass, 2026-01-02T03:04:05Z") && page.contains(&program));
     let manifest: Value = serde_json::from_str(&manifest).unwrap();
     assert_eq!(manifest["campaign"]["selftest"], "pass");
     assert_eq!(bench.statistics()["discrepancies"], json!([]));
     assert!(manifest["files"].as_array().unwrap().iter().any(|f| f["path"] == "selftest.json"));
+    let made_by = &manifest["campaign"]["made_by"];
+    assert_eq!(made_by[0]["maker"]["program_sha256"], program);
+    assert_eq!(made_by[0]["results"], 80);
+    // A self-test of another program says nothing of these results.
+    std::fs::write(
+        &path,
+        test.to_string().replace("fail", "pass").replace(&program, &"ab".repeat(32)),
+    )
+    .unwrap();
+    assert_eq!(bench.report().0, 0);
+    let found = bench.statistics()["discrepancies"][0]["what"].as_str().unwrap().to_owned();
+    assert!(
+        found.contains("the self-test is of program abababababab, and 80 results are by another"),
+        "{found}"
+    );
 }
