@@ -345,6 +345,7 @@ fn campaign(
         factors: Vec::new(),
         requirements: vec![Planned { check: Found::Kept.requirement(), ensemble }],
         not_by_test: Vec::new(),
+        accounts: Vec::new(),
         scenarios: vec![planned.clone()],
         cases: cases.collect(),
     };

@@ -4,7 +4,7 @@
 mod measures;
 
 use crate::failure::Failure;
-use crate::terminal::{note, print, print_json};
+use crate::terminal::{note, print, print_json, tell_account};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::plan::requirements::Measures;
@@ -36,7 +36,8 @@ enum Command {
     /// Convert a file to another format; the extensions tell the formats: .toml, .sdoc, .reqif, .reqifz, .json, none for a folder
     /// of Doorstop.
     ///
-    /// Parts that the other format can't keep are named. The exit status is 3 if requirements could not be read.
+    /// Parts that the other format can't keep are named. The exit status is 3 if requirements could not be read. A .toml keeps the
+    /// account of what was read, and a campaign on it is inconclusive then.
     Convert {
         /// Existing file.
         #[arg(value_name = "FROM")]
@@ -93,7 +94,7 @@ fn check(path: &Path, mapping: Option<&Path>) -> Result<Verdict, Failure> {
         count("open")
     ))?;
     // A requirement without a stated verification can't be shown, and one that is missing neither.
-    let is_whole = count("open") == 0 && imported.skipped() == 0;
+    let is_whole = count("open") == 0 && doubts(&imported) == 0;
     Ok(if is_whole { Verdict::Pass } else { Verdict::Inconclusive })
 }
 
@@ -115,20 +116,25 @@ fn convert(
         note!("octant: {}: {loss}", to.display());
     }
     print(&format!("{}\n", to.display()))?;
-    match imported.skipped() {
-        0 => Ok(Verdict::Pass),
-        number => {
-            let number = counted(number, "requirement", "requirements");
-            note!("octant: {}: {number} could not be read: the file is not complete", to.display());
-            Ok(Verdict::Inconclusive)
-        }
+    if imported.skipped() > 0 {
+        let number = imported.skipped();
+        let number =
+            format!("{number} {}", if number == 1 { "requirement" } else { "requirements" });
+        note!("octant: {}: {number} could not be read: the file is not complete", to.display());
     }
+    Ok(if doubts(&imported) == 0 { Verdict::Pass } else { Verdict::Inconclusive })
+}
+
+/// Number of entries of the accounts, of this document and of those before it, that could have changed a verdict.
+fn doubts(imported: &Imported) -> usize {
+    imported.accounts().iter().map(|account| account.doubts().len()).sum()
 }
 
 /// Reads the requirements of a file; parts that an import leaves out are listed on stderr.
 fn read(path: &Path, mapping: Option<&Path>) -> Result<Imported, Failure> {
     let mapping = mapping.map(exchange::read_mapping).transpose().map_err(Failure::input)?;
     let imported = exchange::read(path, mapping.as_ref(), &Measures).map_err(Failure::input)?;
+    imported.accounts().iter().for_each(tell_account);
     for note in &imported.notes {
         note!("octant: {}: {note}", path.display());
     }

@@ -11,6 +11,16 @@ macro_rules! note {
 
 pub(crate) use note;
 
+/// Prints an account: a line where every unit was used as it was found and at the configured rate, else a line for each repair
+/// and loss too.
+pub(crate) fn tell_account(account: &Account) {
+    note!("octant: {}", account.headline());
+    let is_off = account.clocked().is_some_and(ClockAccount::is_off);
+    if !account.is_plain() || !account.doubts().is_empty() || is_off {
+        account.lines().iter().skip(1).for_each(|line| note!("octant:   {line}"));
+    }
+}
+
 /// Set while a person is asked on the terminal, which then has no bar of progress.
 static ASKING: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(false);
 

@@ -93,6 +93,34 @@ fn a_pass_is_a_pass_everywhere() {
     assert_eq!(verdict_of(&traced, "DOC-1"), &Value::Null);
 }
 
+/// A part of the document that the requirements came from could not be read: nobody tests what it said.
+#[test]
+fn requirements_that_may_be_missing_are_inconclusive_everywhere() {
+    let bench = Bench::new(&CAMPAIGN.replace("replicates = 40", "replicates = 2"));
+    lower(&bench, "20 %");
+    let path = bench.at("requirements.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let account = "[[accounts]]\ninput = \"ins.reqif\"\nunit = [\"object\", \"objects\"]\nread = 4\nused = 3\n\
+                   left_out = [{ kind = \"without a text\", count = 1, first = \"o4 in line 9\", doubt = true }]\n";
+    std::fs::write(&path, format!("{text}\n{account}")).unwrap();
+    let (bench, plan, _) = bench.fill(|_, _, _| {});
+    let traced = agree(&bench, 3, "inconclusive");
+    assert_eq!(verdict_of(&traced, "CAL-1"), "pass");
+    assert_eq!(verdict_of(&traced, "NAV-1"), "pass");
+    let doubt = "ins.reqif: left out: 1 without a text, the first o4 in line 9";
+    assert_eq!(traced["doubts"], json!([doubt]));
+    assert_eq!(plan.accounts.len(), 1);
+    for command in ["status", "trace"] {
+        let (_, said) = says(&bench, &["campaign", command, "out"]);
+        assert!(said.contains(&format!("requirements may be missing: {doubt}")), "{said}");
+    }
+    // The account is a part of the plan: without it the file is another one.
+    std::fs::write(&path, text).unwrap();
+    let (status, said) = says(&bench, &["campaign", "trace", "out"]);
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains("changed after the campaign was planned"), "{said}");
+}
+
 #[test]
 fn a_failing_requirement_of_a_scenario_is_in_the_trace_and_fails_everywhere() {
     let (bench, ..) = modest_and_filled(|index, _, result| {

@@ -1,5 +1,6 @@
 //! Notes of an import, and requirements that a format can't hold.
 
+use octant_account::{Account, AccountEntry, Weight};
 use octant_verdict::Requirements;
 use std::fmt;
 
@@ -24,13 +25,43 @@ pub struct Imported {
     pub notes: Vec<Note>,
     /// Pictures and other files of an archive, which texts refer to.
     pub attachments: Vec<Attachment>,
+    /// Account of the objects of the document.
+    pub account: Account,
 }
 
+/// Units of the account of a `requirements.toml`.
+const OWN_UNIT: [&str; 2] = ["requirement", "requirements"];
+
 impl Imported {
-    /// Number of requirements that could not be read, and are missing.
+    /// Requirements of a `requirements.toml`, all of which are used.
     #[must_use]
-    pub fn skipped(&self) -> usize {
-        self.notes.iter().filter(|note| note.skipped).count()
+    pub fn own(requirements: Requirements, file: &str) -> Self {
+        let count = requirements.requirements.len() as u64;
+        let account = Account::new(file, OWN_UNIT).used(count);
+        Self { requirements, notes: Vec::new(), attachments: Vec::new(), account }
+    }
+
+    /// True for the requirements of a `requirements.toml`, which is no document of another tool.
+    pub(crate) fn is_own(&self) -> bool {
+        self.account.unit()[0] == OWN_UNIT[0]
+    }
+
+    /// Number of objects that could have been requirements, and could not be read or are missing.
+    #[must_use]
+    pub fn skipped(&self) -> u64 {
+        let of = |(heading, entry): (&str, &AccountEntry)| {
+            (entry.weight == Weight::Doubt && matches!(heading, "left out" | "missing"))
+                .then_some(entry.count)
+        };
+        self.account.entries().filter_map(of).sum()
+    }
+
+    /// Accounts of this document, and of those that it was converted from.
+    #[must_use]
+    pub fn accounts(&self) -> Vec<Account> {
+        let mut all = self.requirements.accounts.clone();
+        all.push(self.account.clone());
+        all
     }
 }
 
@@ -52,8 +83,6 @@ pub struct Note {
     pub line: usize,
     /// Description, in plain words.
     pub message: String,
-    /// True if a requirement could not be read, and is missing.
-    pub skipped: bool,
 }
 
 impl Note {
@@ -63,10 +92,6 @@ impl Note {
 
     pub(crate) fn in_file(self, file: &str) -> Self {
         Self { file: file.to_owned(), ..self }
-    }
-
-    pub(crate) fn skipped(self) -> Self {
-        Self { skipped: true, ..self }
     }
 }
 

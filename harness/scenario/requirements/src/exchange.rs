@@ -128,6 +128,9 @@ pub fn read_mapping(path: &Path) -> Result<Mapping, ExchangeError> {
 
 /// Reads the requirements of a file, in the format that its name tells.
 ///
+/// The account counts each object of the document. One that can't be read and could have been a requirement is a doubt,
+/// and the others are read.
+///
 /// # Errors
 /// If it can't be read, isn't valid, or has names for its attributes that a mapping doesn't fit.
 pub fn read(
@@ -151,11 +154,7 @@ pub fn read(
     }
     let text = decode(&bytes, &name)?;
     Ok(match format {
-        ExchangeFormat::Toml => Imported {
-            requirements: file::read(&text, &name, checker)?,
-            notes: Vec::new(),
-            attachments: Vec::new(),
-        },
+        ExchangeFormat::Toml => Imported::own(file::read(&text, &name, checker)?, &name),
         ExchangeFormat::StrictDoc => sdoc::read(&text, &name)?,
         ExchangeFormat::Needs => needs::read(&text, &name, mapping)?,
         _ => reqif::read_mapped(&text, &name, mapping)?,
@@ -177,7 +176,7 @@ pub fn write(
     let format = format_of(path)?;
     let requirements = &imported.requirements;
     let bytes = match format {
-        ExchangeFormat::Toml => file::write(requirements).into_bytes(),
+        ExchangeFormat::Toml => toml(imported).into_bytes(),
         ExchangeFormat::StrictDoc => sdoc::write(requirements)?.into_bytes(),
         ExchangeFormat::ReqIf => reqif::write(requirements, time)?.into_bytes(),
         ExchangeFormat::ReqIfArchive => {
@@ -191,6 +190,15 @@ pub fn write(
     };
     store(path, &bytes, force)?;
     Ok(losses(imported, format))
+}
+
+/// Writes a `requirements.toml` with the account of the document that it was converted from.
+fn toml(imported: &Imported) -> String {
+    let mut requirements = imported.requirements.clone();
+    if !imported.is_own() {
+        requirements.accounts.push(imported.account.clone());
+    }
+    file::write(&requirements)
 }
 
 fn store(path: &Path, bytes: &[u8], force: bool) -> Result<(), ExchangeError> {
@@ -234,18 +242,20 @@ mod folder {
         !name.starts_with('.') && (name.ends_with(".yml") || name.ends_with(".yaml"))
     }
 
+    fn is_markdown(name: &str) -> bool {
+        !name.starts_with('.') && name.ends_with(".md")
+    }
+
     pub(super) fn read(path: &Path, mapping: &Mapping) -> Result<Imported, ExchangeError> {
         let failed = |error| ExchangeError::Read { path: path.to_owned(), error };
         let (mut files, mut notes) = (Vec::new(), Vec::new());
         for name in names(path).map_err(failed)? {
             let file = path.join(&name);
-            if is_item(&name) || name == ".doorstop.yml" {
+            if is_item(&name) || is_markdown(&name) || name == ".doorstop.yml" {
                 let text = decode(&bytes(&file)?, &file.display().to_string())?;
                 files.push((name, text));
             } else if file.join(".doorstop.yml").exists() {
                 notes.push(Note::new(0, format!("the document in {name} is not read")));
-            } else if name.ends_with(".md") {
-                notes.push(Note::new(0, format!("{name} is not read: items in Markdown")));
             }
         }
         let mut imported = doorstop::read(&files, &path.display().to_string(), mapping)?;

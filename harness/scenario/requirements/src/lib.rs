@@ -18,6 +18,8 @@ pub mod exchange;
 mod foreign;
 pub mod format;
 mod hierarchy;
+mod ledger;
+mod lines;
 pub mod losses;
 pub mod mapping;
 pub mod needs;

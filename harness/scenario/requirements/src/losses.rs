@@ -18,6 +18,16 @@ pub fn losses(imported: &Imported, format: ExchangeFormat) -> Vec<String> {
             listed(&names)
         ));
     }
+    if format != ExchangeFormat::Toml {
+        let doubts: Vec<String> =
+            imported.accounts().iter().flat_map(octant_account::Account::doubts).collect();
+        let doubts: Vec<&str> = doubts.iter().map(String::as_str).collect();
+        name(
+            &mut found,
+            "only .toml keeps the accounts of the documents before it, with their doubts",
+            &doubts,
+        );
+    }
     match format {
         ExchangeFormat::Toml => {}
         ExchangeFormat::ReqIf | ExchangeFormat::ReqIfArchive => reqif(requirements, &mut found),
@@ -100,6 +110,13 @@ fn sdoc(requirements: &Requirements, found: &mut Vec<String>) {
     let changed = |r: &Requirement| r.kind.as_ref().is_some_and(|k| !crate::sdoc::legal_kind(k));
     let ids = ids(requirements, changed);
     name(found, "the kind becomes capitals", &ids);
+    let renamed = |key: &&str| {
+        let own = key.strip_prefix("METADATA.").unwrap_or(key);
+        !key.starts_with("OPTIONS.") && crate::sdoc::metadata_name(key) != own
+    };
+    let head = requirements.document.iter().map(|(key, _)| key.as_str());
+    let head: Vec<&str> = head.filter(renamed).collect();
+    name(found, "these names in the head of the document get _ for other characters", &head);
 }
 
 fn head(requirements: &Requirements, found: &mut Vec<String>, kept: impl Fn(&str) -> bool) {

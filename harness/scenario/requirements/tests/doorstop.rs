@@ -42,6 +42,7 @@ fn a_folder_of_doorstop_is_read() {
     let off = item("1.2", "Off.", "").replace("active: true", "active: false");
     let prose = item("1.3", "Prose.", "").replace("normative: true", "normative: false");
     let empty = item("1.4", "''", "");
+    let titled = item("1.5", "''", "header: Only a header\n");
     let found = read(&[
         (".doorstop.yml", SETTINGS),
         ("REQ001.yml", HEADING),
@@ -51,9 +52,18 @@ fn a_folder_of_doorstop_is_read() {
         ("REQ005.yml", &off),
         ("REQ006.yml", &prose),
         ("REQ007.yml", &empty),
+        ("REQ008.yml", &titled),
     ]);
     let ids: Vec<&str> = found.requirements.requirements.iter().map(|r| r.id.as_str()).collect();
-    assert_eq!(ids, ["REQ002", "REQ004", "REQ003"]);
+    assert_eq!(ids, ["REQ002", "REQ004", "REQ003", "REQ008"]);
+    assert_eq!(found.requirements.get("REQ008").unwrap().text, "Only a header");
+    let account = &found.account;
+    let counts = (account.read(), account.used_count(), account.left_out_count());
+    assert_eq!(counts, (8, 5, 3));
+    assert_eq!(
+        account.doubts(),
+        ["reqs: left out: 1 without a text, the first REQ007 in REQ007.yml, line 1"]
+    );
     let first = &found.requirements.requirements[0];
     assert_eq!(first.title.as_deref(), Some("Drift"));
     assert_eq!(first.text, "The *drift* stays below:\n\n20 arcmin");
@@ -94,25 +104,62 @@ fn a_mapping_finds_attributes_of_a_project() {
 
 #[test]
 fn what_is_no_item_is_refused_with_its_file_and_line() {
-    let with = |text: &str| said(&[(".doorstop.yml", SETTINGS), ("REQ001.yml", text)]);
+    let with = |text: &str| {
+        let found =
+            read(&[(".doorstop.yml", SETTINGS), ("REQ001.yml", text), ("REQ002.yml", ITEM)]);
+        // The others are read.
+        assert_eq!(found.requirements.requirements.len(), 1);
+        assert_eq!((found.skipped(), found.account.read()), (1, 2));
+        found.notes[0].to_string()
+    };
     assert_eq!(said(&[("REQ001.yml", ITEM)]), "reqs:1:1: there is no .doorstop.yml in the folder");
     assert_eq!(
         with("- a\n- b\n"),
-        "reqs/REQ001.yml:1:1: found a list, expected a mapping of attributes"
+        "REQ001.yml, line 1: the object REQ001 can't be read: found a list, expected a mapping of \
+         attributes: it is left out"
     );
     assert!(with("").contains("found an empty file"));
-    assert!(with("text: 'x\n").starts_with("reqs/REQ001.yml:"), "{}", with("text: 'x\n"));
-    assert!(
-        with("text: a\ntext: b\n")
-            .contains("REQ001.yml:2:1: the key \"text\" is there a second time")
-    );
+    assert!(with("text: 'x\n").starts_with("REQ001.yml, line "), "{}", with("text: 'x\n"));
+    assert!(with("text: a\ntext: b\n").starts_with(
+        "REQ001.yml, line 2: the object REQ001 can't be read: the key \"text\" is there a"
+    ));
     assert!(with("level: one\n").contains("level is no outline number"));
     assert!(with("active: maybe\n").contains("active is no truth value"));
-    assert!(with("a: &x [1]\nb: *x\n").contains(":2:1: found an alias"));
+    assert!(
+        with("a: &x [1]\nb: *x\n")
+            .contains("line 2: the object REQ001 can't be read: found an alias")
+    );
     let deep = format!("a: {}", "[".repeat(60));
     assert!(with(&deep).contains("more than 50 levels"), "{}", with(&deep));
-    let markdown = SETTINGS.replace("itemformat: yaml", "itemformat: markdown");
-    assert!(said(&[(".doorstop.yml", &markdown)]).contains("the items are in Markdown"));
+    let other = SETTINGS.replace("itemformat: yaml", "itemformat: asciidoc");
+    assert_eq!(
+        said(&[(".doorstop.yml", &other)]),
+        "reqs/.doorstop.yml:1:1: itemformat is \"asciidoc\", expected \"yaml\" or \"markdown\""
+    );
+}
+
+#[test]
+fn items_in_markdown_are_read() {
+    let settings = SETTINGS.replace("itemformat: yaml", "itemformat: markdown");
+    let item = "---\nactive: true\nlevel: 1.1\nlinks: []\nnormative: true\n---\n\n# Drift\n\nIt stays *below*:\n\n\
+                20 arcmin\n";
+    let found = read(&[
+        (".doorstop.yml", &settings),
+        ("REQ001.md", item),
+        ("REQ002.md", "---\nlevel: 1.2\n---\nNo header.\n"),
+        ("REQ003.md", "# No attributes\n"),
+        ("REQ004.yml", ITEM),
+    ]);
+    let texts: Vec<(Option<&str>, &str)> = (found.requirements.requirements.iter())
+        .map(|r| (r.title.as_deref(), r.text.as_str()))
+        .collect();
+    assert_eq!(texts, [(Some("Drift"), "It stays *below*:\n\n20 arcmin"), (None, "No header.")]);
+    assert_eq!((found.account.read(), found.skipped()), (3, 1));
+    let notes: String = found.notes.iter().map(|note| format!("{note}\n")).collect();
+    assert!(
+        notes.contains("REQ003.md, line 1: the object REQ003 can't be read: found no attributes")
+    );
+    assert!(notes.contains("REQ004.yml is not read: the items are in itemformat markdown"));
 }
 
 #[test]
@@ -163,7 +210,7 @@ fn what_doorstop_has_no_place_for_is_named_or_refused() {
         vec![Parent { id: "SYS-1".to_owned(), role: Some("Refines".to_owned()) }];
     all.document = vec![("VERSION".to_owned(), "2".to_owned())];
     assert!(doorstop::write(&all).is_ok());
-    let imported = Imported { requirements: all, notes: Vec::new(), attachments: Vec::new() };
+    let imported = Imported::own(all, "r.toml");
     let lost = losses(&imported, ExchangeFormat::Doorstop);
     assert_eq!(
         lost,
@@ -186,11 +233,7 @@ fn a_folder_is_written_only_where_nothing_is_lost() {
         ],
         ..Requirements::default()
     };
-    let imported = |all: &Requirements| Imported {
-        requirements: all.clone(),
-        notes: Vec::new(),
-        attachments: Vec::new(),
-    };
+    let imported = |all: &Requirements| Imported::own(all.clone(), "r.toml");
     assert_eq!(exchange::write(&path, &imported(&all), "", false).unwrap(), Vec::<String>::new());
     let back = exchange::read(&path, None, &Anything).unwrap();
     assert_eq!(back.requirements.requirements, all.requirements);

@@ -15,23 +15,7 @@ fn a_broken_sdoc_is_told_with_its_line() {
     let head = "[DOCUMENT]\nTITLE: T\n\n";
     assert_eq!(said(""), "r.sdoc:1:1: the file ends here, expected [DOCUMENT]");
     assert_eq!(said("[DOCUMENT]\nVERSION: 1\n"), "r.sdoc:3:1: the document has no TITLE");
-    assert_eq!(
-        said(&format!("{head}[REQUIREMENT]\nUID: A\nSTATEMENT: >>>\nx\n")),
-        "r.sdoc:6:1: STATEMENT begins with >>> and isn't closed by a line <<<"
-    );
-    assert_eq!(
-        said(&format!("{head}[REQUIREMENT]\nSTATEMENT: x\n")),
-        "r.sdoc:4:1: this REQUIREMENT has no UID, by which it could be named"
-    );
     let two = "[REQUIREMENT]\nUID: A\nSTATEMENT: x\n\n";
-    assert_eq!(
-        said(&format!("{head}{two}{two}")),
-        "r.sdoc:9:1: the UID \"A\" is there a second time, the first is in line 5"
-    );
-    assert_eq!(
-        said(&format!("{head}[REQUIREMENT]\nUID A\n")),
-        "r.sdoc:5:1: found \"UID A\", expected a field NAME: value"
-    );
     assert_eq!(
         said(&format!("{head}[[SECTION]]\nTITLE: S\n\n{two}")),
         "r.sdoc:11:1: the file ends, and [[SECTION]] of line 4 isn't closed"
@@ -46,6 +30,59 @@ fn a_broken_sdoc_is_told_with_its_line() {
         said(&format!("{head}[[/SECTION]]\n"))
             .contains("found the end of SECTION, and none is open")
     );
+}
+
+#[test]
+fn a_bad_node_of_an_sdoc_costs_one_node() {
+    let head = "[DOCUMENT]\nTITLE: T\n\n";
+    let good = "[REQUIREMENT]\nUID: LAST\nSTATEMENT: x\n";
+    for (bad, expected) in [
+        (
+            "[REQUIREMENT]\nUID: A\nSTATEMENT: >>>\nx\n",
+            "line 4: the object REQUIREMENT can't be read in line 6: STATEMENT begins with >>> and isn't closed by a \
+             line <<<: it is left out",
+        ),
+        (
+            "[REQUIREMENT]\nSTATEMENT: x\n",
+            "line 4: the object REQUIREMENT has no UID and no MID, by which it could be named: it is left out",
+        ),
+        (
+            "[REQUIREMENT]\nUID: LAST\nSTATEMENT: y\n",
+            "line 9: the object LAST has the UID of another, that of line 5: it is left out",
+        ),
+        (
+            "[REQUIREMENT]\nUID A\nSTATEMENT: x\n",
+            "line 4: the object REQUIREMENT can't be read in line 5: found \"UID A\", expected a field NAME: value: it \
+             is left out",
+        ),
+        (
+            "[REQUIREMENT]\nUID: A\nCOMMENT: >>>\n<<<\n",
+            "line 4: the object A has neither STATEMENT nor TITLE: it is left out",
+        ),
+        (
+            "[DOCUMENT_FROM_FILE]\nFILE: b.sdoc\n",
+            "line 4: the object b.sdoc is another document: read it by itself: it is left out",
+        ),
+        (
+            "COMMENT: after an empty line\n",
+            "line 4: the object between the nodes is no node: found \"COMMENT: after an empty line\", expected \
+             [NAME]: it is left out",
+        ),
+    ] {
+        let read = sdoc::read(&format!("{head}{bad}\n{good}"), "r.sdoc").unwrap();
+        let notes: Vec<String> = read.notes.iter().map(ToString::to_string).collect();
+        assert!(notes.contains(&expected.to_owned()), "{expected}\n{notes:?}");
+        assert_eq!((read.account.read(), read.skipped()), (2, 1), "{bad}");
+        assert_eq!(read.requirements.requirements[0].id, "LAST");
+        assert_eq!(read.account.doubts().len(), 1);
+    }
+    // A MID names a node as well.
+    let mid = "[REQUIREMENT]\nMID: 06a1\nSTATEMENT: x\nCOMMENT: >>>\n<<<\n\n[TEXT]\nSTATEMENT: y\n";
+    let read = sdoc::read(&format!("{head}{mid}"), "r.sdoc").unwrap();
+    assert_eq!(read.requirements.requirements[0].id, "06a1");
+    let account = &read.account;
+    let counts = (account.read(), account.repaired_count(), account.left_out_count());
+    assert_eq!((counts, account.doubts()), ((2, 1, 1), vec![]));
 }
 
 #[test]
@@ -88,34 +125,115 @@ fn a_broken_reqif_is_told_with_its_line() {
         said("<html/>")
             .starts_with("r.reqif:1:1: found html of the namespace \"\", expected REQ-IF of ")
     );
-    let one = Requirement::new("N-1", "x", Verification::Analysis);
-    let all = Requirements { requirements: vec![one], ..Requirements::default() };
-    let good = reqif::write(&all, "2026-01-31T12:00:00Z").unwrap();
+    assert!(said("<RIF/>").contains("found RIF, the format before ReqIF"), "{}", said("<RIF/>"));
+}
+
+fn two_of_reqif() -> String {
+    let of = |id: &str| Requirement::new(id, "x", Verification::Analysis);
+    let all = Requirements { requirements: vec![of("N-1"), of("N-2")], ..Requirements::default() };
+    reqif::write(&all, "2026-01-31T12:00:00Z").unwrap()
+}
+
+#[test]
+fn a_bad_object_of_a_reqif_costs_one_object() {
+    let good = two_of_reqif();
     let line = |of: &str| good.lines().position(|line| line.contains(of)).unwrap() + 1;
-    for (from, to, expected) in [
+    let at = line("<SPEC-OBJECT IDENTIFIER=\"octant-N-1\"");
+    for (from, to, expected, counts) in [
         (
             "<SPEC-OBJECT-REF>octant-N-1<",
             "<SPEC-OBJECT-REF>gone<",
-            "the hierarchy has an object \"gone\" that isn't in the file",
+            format!(
+                "line {}: the hierarchy has an object \"gone\" that isn't in the file",
+                line("<SPEC-OBJECT-REF>octant-N-1<") - 2
+            ),
+            (2, 0, 1),
         ),
         (
             "<SPEC-OBJECT-TYPE-REF>octant-t-octant-REQUIREMENT<",
             "<SPEC-OBJECT-TYPE-REF>gone<",
-            "the object \"octant-N-1\" is of a type \"gone\" that isn't in the file",
+            format!(
+                "line {at}: the object octant-N-1 is of a type \"gone\" that isn't in the file: it is left out"
+            ),
+            (2, 1, 0),
         ),
         (
             "<ATTRIBUTE-DEFINITION-XHTML-REF>",
             "<ATTRIBUTE-DEFINITION-XHTML-REF>gone",
-            "that no type in the file has",
+            format!(
+                "line {at}: the object octant-N-1 has an attribute \"goneoctant-t-octant-REQUIREMENT-a-2\" that no \
+                 type in the file has: it is left out"
+            ),
+            (2, 1, 0),
         ),
-        ("<SPEC-OBJECT IDENTIFIER=\"octant-N-1\"", "<SPEC-OBJECT", "SPEC-OBJECT has no IDENTIFIER"),
+        (
+            "<SPEC-OBJECT IDENTIFIER=\"octant-N-1\"",
+            "<SPEC-OBJECT",
+            format!(
+                "line {at}: the object without an IDENTIFIER has no IDENTIFIER: it is left out"
+            ),
+            (2, 1, 1),
+        ),
+        (
+            "<SPEC-OBJECT IDENTIFIER=\"octant-N-2\"",
+            "<SPEC-OBJECT IDENTIFIER=\"octant-N-1\"",
+            format!(
+                "line {}: the object octant-N-1 is there a second time, the first is in line {at}: it is left out",
+                line("<SPEC-OBJECT IDENTIFIER=\"octant-N-2\"")
+            ),
+            (2, 1, 1),
+        ),
+        (
+            "THE-VALUE=\"N-2\"",
+            "THE-VALUE=\"N-1\"",
+            format!(
+                "line {}: the object octant-N-2 has the id \"N-1\" of another, that of line {at}: it is left out",
+                line("<SPEC-OBJECT IDENTIFIER=\"octant-N-2\"")
+            ),
+            (2, 1, 0),
+        ),
     ] {
         assert!(good.contains(from), "{from}\n{good}");
-        let error = said(&good.replacen(from, to, 1));
-        assert!(error.contains(expected), "{error}");
-        let at: usize = error.split(':').nth(1).unwrap().parse().unwrap();
-        assert!(at > line("<CORE-CONTENT>"), "{error}");
+        let read = reqif::read(&good.replacen(from, to, 1), "r.reqif").unwrap();
+        let notes: Vec<String> = read.notes.iter().map(ToString::to_string).collect();
+        assert!(notes.contains(&expected), "{expected}\n{notes:?}");
+        let account = &read.account;
+        let found = (account.read(), account.left_out_count(), account.missing_count());
+        assert_eq!(found, counts, "{to}");
+        assert_eq!(account.doubts().len() as u64, counts.1 + counts.2);
+        assert_eq!(read.requirements.requirements.len() as u64, 2 - counts.1);
     }
+}
+
+#[test]
+fn other_forms_of_reqif_are_read() {
+    let good = two_of_reqif();
+    let is_read = |text: &str| {
+        let read = reqif::read(text, "r.reqif").unwrap();
+        assert_eq!(read.requirements.requirements.len(), 2);
+        read
+    };
+    is_read(&format!("\n \r\n{good}"));
+    let later = good.replace("<CORE-CONTENT>", "<CORE-CONTENT></x>");
+    let at = good.lines().position(|line| line.contains("<CORE-CONTENT>")).unwrap() + 1;
+    let error = reqif::read(&format!("\n\n{later}"), "r.reqif").unwrap_err().to_string();
+    assert!(error.starts_with(&format!("r.reqif:{}:", at + 2)), "{error}");
+    let read = is_read(&good.replace("ReqIF/20110401/reqif.xsd", "ReqIF/20101201"));
+    assert!(
+        read.account.lines()[1].contains("the namespace of 2010"),
+        "{:?}",
+        read.account.lines()
+    );
+    // A head whose names StrictDoc doesn't take becomes one that it does.
+    let mut all = read.requirements;
+    all.document.push(("ReqIF.Prefix".to_owned(), "NAV".to_owned()));
+    let text = sdoc::write(&all).unwrap();
+    assert!(text.contains("  ReqIF_Prefix: NAV\n"), "{text}");
+    let lost = losses(&Imported::own(all, "r.toml"), ExchangeFormat::StrictDoc);
+    assert_eq!(
+        lost,
+        ["these names in the head of the document get _ for other characters: ReqIF.Prefix"]
+    );
 }
 
 #[test]
@@ -172,15 +290,40 @@ fn what_a_format_has_no_place_for_is_refused() {
     // A relation has both ends in one file: the other is named.
     let mut alone = of("A", "x");
     alone.requirements[0].parents.push(Parent { id: "Z".to_owned(), role: None });
-    let imported = Imported { requirements: alone, notes: Vec::new(), attachments: Vec::new() };
+    let imported = Imported::own(alone, "r.toml");
     let lost = losses(&imported, ExchangeFormat::ReqIf);
     assert_eq!(lost.len(), 1);
     assert!(
         lost[0].contains("parents in other documents are left out")
             && lost[0].ends_with(": Z of A")
     );
+    // An identifier that XML doesn't take, as a MID that begins with a digit, is written in another form.
     let mut all = of("A", "x");
-    all.requirements[0].identifier = Some("1 2".to_owned());
-    let error = reqif::write(&all, "").unwrap_err().to_string();
-    assert!(error.contains("its identifier \"1 2\" is none that XML takes"), "{error}");
+    for id in ["1 2", "06a1f3", "a_b", "octant_id-x", "é+"] {
+        all.requirements[0].identifier = Some(id.to_owned());
+        let text = reqif::write(&all, "").unwrap();
+        let back = reqif::read(&text, "r.reqif").unwrap();
+        assert_eq!(back.requirements.requirements[0].identifier.as_deref(), Some(id), "{text}");
+    }
+}
+
+#[test]
+fn the_time_of_reading_grows_with_the_size() {
+    let of = |count: usize| {
+        let one = |at: usize| Requirement::new(&format!("N-{at}"), "x\ny", Verification::Analysis);
+        let requirements = (0..count).map(one).collect();
+        reqif::write(&Requirements { requirements, ..Requirements::default() }, "").unwrap()
+    };
+    let (few, many) = (of(500), of(8000));
+    let time = |text: &str| {
+        let all = (0..3).map(|_| {
+            let begin = std::time::Instant::now();
+            assert!(reqif::read(text, "r.reqif").is_ok());
+            begin.elapsed()
+        });
+        all.min().unwrap()
+    };
+    // 16 times as many objects took 256 times as long.
+    let ratio = time(&many).as_secs_f64() / time(&few).as_secs_f64();
+    assert!(ratio < 100.0, "{ratio}");
 }

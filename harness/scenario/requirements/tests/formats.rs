@@ -162,7 +162,7 @@ fn requirements() -> impl Strategy<Value = Requirements> {
         }
         let definitions = attributes().into_iter().map(|(definition, _)| definition);
         let definitions = definitions.filter(|d| d.kind != AttributeKind::Text).collect();
-        Requirements { title, document, definitions, requirements }
+        Requirements { title, document, definitions, requirements, accounts: Vec::new() }
     })
 }
 
@@ -236,6 +236,7 @@ fn the_escapes_of_a_document_follow_its_markup() {
         document: Vec::new(),
         definitions: Vec::new(),
         requirements: vec![one],
+        accounts: Vec::new(),
     };
     let plain = sdoc::write(&all).unwrap();
     assert!(plain.contains("OPTIONS:\n  MARKUP: Text\n"), "{plain}");

@@ -1,6 +1,7 @@
 //! Tests of requirements in the files of other tools, in one program.
 #![allow(clippy::unwrap_used)]
 
+mod accounts;
 mod archive;
 mod dialects;
 #[cfg(feature = "doorstop")]
@@ -10,3 +11,4 @@ mod formats;
 mod needs;
 mod reqif;
 mod strictdoc;
+mod texts;

@@ -46,13 +46,17 @@ fn the_file_of_the_builder_is_read() {
     let notes = notes(&found);
     for expected in [
         "the versions 0.9 are left out: \"1.0\" is current",
-        "line 6: NAV_2: left out: arch, which is no text",
-        "line 9: the object NAV_3 has no text: it is left out",
+        "line 6: NAV_2 is an object with fields that are left out: arch, which is no text",
         "no requirements but information: T_1",
         "computed by sphinx-needs, and left out: docname, links_back, parent_need",
     ] {
         assert!(notes.contains(expected), "{expected}\n{notes}");
     }
+    // A need with a title and without a body is a requirement.
+    assert_eq!(found.requirements.get("NAV_3").unwrap().text, "Empty");
+    let account = &found.account;
+    let counts = (account.read(), account.repaired_count(), account.left_out_count());
+    assert_eq!((counts, account.doubts()), ((4, 1, 1), vec![]));
     let written = needs::write(&found.requirements, "2026-01-31T12:00:00Z").unwrap();
     assert_eq!(read(&written).requirements, found.requirements, "{written}");
 }
@@ -65,7 +69,7 @@ fn a_mapping_finds_fields_of_a_project() {
     )
     .unwrap();
     let found = needs::read(FILE, "needs.json", &mapping).unwrap();
-    assert_eq!(found.requirements.requirements.len(), 1);
+    assert_eq!(found.requirements.requirements.len(), 2);
     assert_eq!(found.requirements.requirements[0].clause.as_deref(), Some("open"));
     let wrong = mapping::read("schema = 1\n[attributes]\nclause = \"statuz\"\n", "m.toml").unwrap();
     let error = needs::read(FILE, "needs.json", &wrong).unwrap_err().to_string();
@@ -92,11 +96,48 @@ fn json_of_another_form_is_refused_in_plain_words() {
     );
     let newer = FILE.replacen('{', "{\"format_version\": 2, ", 1);
     assert!(said(&newer).contains("format_version is 2, and this Octant reads version 1"));
-    let twice = FILE.replace("\"NAV_2\": {", "\"NAV_1\": {");
-    assert!(said(&twice).contains("the id \"NAV_1\" is there a second time"), "{}", said(&twice));
-    assert!(said(&twice).starts_with("needs.json:6:"), "{}", said(&twice));
+    let twice = FILE.replace("\"0.9\": {", "\"1.0\": {");
+    assert!(
+        said(&twice).contains("the version \"1.0\" is there a second time"),
+        "{}",
+        said(&twice)
+    );
     let missing = FILE.replace("\"needs\": {\n", "\"need\": {\n");
     assert!(said(&missing).contains("the version \"1.0\" has no \"needs\""), "{}", said(&missing));
+}
+
+#[test]
+fn a_bad_need_costs_one_need() {
+    for (from, to, expected) in [
+        (
+            "\"NAV_2\": {",
+            "\"NAV_1\": {",
+            "line 6: the object NAV_1 is there a second time, the first is in line 3: it is left out",
+        ),
+        (
+            "\"Of it.\"",
+            "{\"a\": 1}",
+            "line 6: the object NAV_2 has content, which is no text: it is left out",
+        ),
+        (
+            "\"title\": \"Empty\"",
+            "\"title\": \"\"",
+            "line 9: the object NAV_3 has no text: it is left out",
+        ),
+        (
+            "\"NAV_3\": {\"id\"",
+            "\"NAV_3\": 3, \"T_2\": {\"type\": \"test\", \"id\"",
+            "the object NAV_3 is no object",
+        ),
+    ] {
+        assert!(FILE.contains(from), "{from}");
+        let found = read(&FILE.replacen(from, to, 1));
+        assert!(notes(&found).contains(expected), "{expected}\n{}", notes(&found));
+        assert_eq!(found.skipped(), 1, "{expected}");
+        let all = if to.contains("T_2") { 5 } else { 4 };
+        assert_eq!(found.account.read(), all, "{expected}");
+        assert_eq!(found.account.doubts().len(), 1);
+    }
 }
 
 #[test]

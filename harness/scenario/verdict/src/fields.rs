@@ -115,7 +115,12 @@ pub fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
         return Ok(Some((Verification::Test(check), used)));
     }
     let Some((line, how)) = of(VERIFICATION) else { return Ok(None) };
-    let verification = match how.to_ascii_lowercase().as_str() {
+    let (method, is_only) = method(how);
+    // The field of several methods stays an attribute.
+    let used = |fields: &[&'static str]| {
+        fields.iter().copied().filter(|field| is_only || *field != VERIFICATION).collect()
+    };
+    let verification = match method.as_str() {
         "analysis" => Verification::Analysis,
         "inspection" => Verification::Inspection,
         // The field stays an attribute.
@@ -130,9 +135,29 @@ pub fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
             if let Some(reason) = misnamed(&tests) {
                 return Err((line, format!("{TESTS}: {reason}")));
             }
-            return Ok(Some((Verification::Tests(tests), vec![VERIFICATION, TESTS])));
+            return Ok(Some((Verification::Tests(tests), used(&[VERIFICATION, TESTS]))));
         }
         _ => return Err((line, format!("{VERIFICATION} is {how:?}"))),
     };
-    Ok(Some((verification, vec![VERIFICATION])))
+    Ok(Some((verification, used(&[VERIFICATION]))))
+}
+
+/// Method that decides among those of a field, in small letters, and whether it is the only one. A requirement that is
+/// verified by test and by analysis too is tested; the first of others counts, if all of them are known.
+fn method(how: &str) -> (String, bool) {
+    let all: Vec<String> = how
+        .split([',', ';', '\n'])
+        .map(|method| method.trim().to_ascii_lowercase())
+        .filter(|method| !method.is_empty())
+        .collect();
+    let known = ["test", "analysis", "inspection", "open"];
+    let rank = |method: &&String| known.iter().position(|known| known == method);
+    let decides = match all.iter().all(|method| known.contains(&method.as_str())) {
+        // An open one is decided by nobody, whatever the others are; a test alone is more.
+        true if all.iter().any(|method| method == "test") => all.iter().min_by_key(rank),
+        true if all.iter().any(|method| method == "open") => all.iter().max_by_key(rank),
+        true => all.first(),
+        false => None,
+    };
+    (decides.cloned().unwrap_or_else(|| how.trim().to_ascii_lowercase()), all.len() == 1)
 }

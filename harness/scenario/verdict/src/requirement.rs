@@ -1,6 +1,7 @@
 //! Definition of a requirement: a statement with an id and a verification.
 
 use crate::verdict::Comparison;
+use octant_account::Account;
 use serde::{Deserialize, Serialize};
 
 /// A limit as it was written. Its value is known to the code that knows the units.
@@ -313,9 +314,17 @@ pub struct Requirements {
     pub definitions: Vec<Definition>,
     /// The requirements.
     pub requirements: Vec<Requirement>,
+    /// Accounts of the documents of other tools that they came from.
+    pub accounts: Vec<Account>,
 }
 
 impl Requirements {
+    /// Lists the reasons why what rests on these requirements is inconclusive: parts of their documents are missing.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        self.accounts.iter().flat_map(Account::doubts).collect()
+    }
+
     /// Requirement with an id.
     #[must_use]
     pub fn get(&self, id: &str) -> Option<&Requirement> {

@@ -122,6 +122,9 @@ pub struct CampaignTrace {
     pub without_requirement: Vec<String>,
     /// Unknown requirements that cases name.
     pub unknown: Vec<UnknownRequirement>,
+    /// Reasons in the accounts of the documents why requirements may be missing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<String>,
 }
 
 /// Trace of a campaign whose cases come one by one.
@@ -209,7 +212,8 @@ impl<'a> GrowingTrace<'a> {
             requirements.requirements.iter().zip(rows).map(|(r, cases)| row(r, cases)).collect();
         let tested = |row: &&TraceRow| row.counts.all() == 0 && row.verdict.is_some();
         let without_case = rows.iter().filter(tested).map(|row| row.id.clone()).collect();
-        CampaignTrace { requirements: rows, without_case, without_requirement, unknown }
+        let doubts = requirements.doubts();
+        CampaignTrace { requirements: rows, without_case, without_requirement, unknown, doubts }
     }
 }
 
@@ -224,12 +228,13 @@ impl CampaignTrace {
     }
 
     /// Worst verdict of all requirements that runs can verify. Without any it is inconclusive, because
-    /// nothing was shown.
+    /// nothing was shown; so it is where requirements may be missing.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let worst = self.requirements.iter().filter_map(|row| row.verdict).max();
-        let unknown = if self.unknown.is_empty() { Verdict::Pass } else { Verdict::Inconclusive };
-        worst.unwrap_or(Verdict::Inconclusive).max(unknown)
+        let is_whole = self.unknown.is_empty() && self.doubts.is_empty();
+        let most = if is_whole { Verdict::Pass } else { Verdict::Inconclusive };
+        worst.unwrap_or(Verdict::Inconclusive).max(most)
     }
 
     /// Requirements that a case verifies, with the verdict of each check.

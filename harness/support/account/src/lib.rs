@@ -149,6 +149,12 @@ impl Account {
         &self.name
     }
 
+    /// Name of the units, singular and plural.
+    #[must_use]
+    pub fn unit(&self) -> &[String; 2] {
+        &self.unit
+    }
+
     /// Rate and clock of the units.
     #[must_use]
     pub fn clocked(&self) -> Option<&ClockAccount> {

@@ -59,6 +59,7 @@ fn derive(
         .requirements
         .iter()
         .map(|(id, found)| format!("{id}: {}: {}", found.verdict.name(), found.reason))
+        .chain(status.doubts.iter().map(|doubt| format!("requirements may be missing: {doubt}")))
         .collect();
     let mut differs = |file: &str, what: &str, said: &str, now: &str| {
         if said != now {

@@ -8,6 +8,7 @@ use crate::plan::shard::Shard;
 use crate::plan::{Case, Plan, StopRule};
 use crate::store::CampaignResults;
 use crate::store::stream_key::StreamKey;
+use octant_account::Account;
 use octant_base::number::plain;
 use octant_base::pool::spawn;
 use octant_score::numerics::differs;
@@ -51,6 +52,9 @@ pub struct CampaignStatus {
     pub requirements: BTreeMap<String, RequirementStatus>,
     /// Requirements that no run can verify.
     pub not_by_test: Vec<String>,
+    /// Reasons in the accounts of the documents of requirements why no campaign on them passes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<String>,
     /// First cases that failed or ended as errors, with reasons.
     pub bad: Vec<Bad>,
     /// Cases with two results.
@@ -141,6 +145,7 @@ pub fn of_results(
         besides: Verdict::Pass,
         requirements: BTreeMap::new(),
         not_by_test: plan.not_by_test.clone(),
+        doubts: plan.accounts.iter().flat_map(Account::doubts).collect(),
         bad: Vec::new(),
         differing: Vec::new(),
         numerics: Vec::new(),
@@ -331,13 +336,17 @@ fn in_words(rule: &StopRule, decision: StopDecision) -> Option<String> {
 
 impl CampaignStatus {
     /// Returns the verdict: the worst of the requirements and the other findings, an error if a
-    /// case has two results, and no pass before all cases have run, or without any case.
+    /// case has two results, and no pass before all cases have run, without any case, or where requirements are missing.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         if !self.differing.is_empty() {
             return Verdict::Error;
         }
-        let unfinished = self.open > 0 || self.cases == 0 || self.requirements.is_empty();
+        // A requirement that nobody tests can't pass in silence.
+        let unfinished = self.open > 0
+            || self.cases == 0
+            || self.requirements.is_empty()
+            || !self.doubts.is_empty();
         let least = if unfinished { Verdict::Inconclusive } else { Verdict::Pass };
         let requirements = self.requirements.values().map(|requirement| requirement.verdict);
         requirements.fold(self.besides.worst(least), Verdict::worst)
@@ -408,6 +417,9 @@ impl CampaignStatus {
         }
         if self.requirements.is_empty() {
             text += "  no requirement checked\n";
+        }
+        for doubt in &self.doubts {
+            _ = writeln!(text, "  requirements may be missing: {doubt}");
         }
         for told in &self.numerics {
             _ = writeln!(text, "  {told}");

@@ -23,14 +23,16 @@ pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
         None => Campaign::load(&plan.campaign)?.requirements,
     };
     let Some(path) = path else {
-        if plan.requirements.is_empty() && plan.not_by_test.is_empty() {
+        if !requirements::has_file(plan) {
             return Ok(Requirements { title: plan.title.clone(), ..Requirements::default() });
         }
         let reason = "it names no file of requirements, and was planned with one".to_owned();
         return Err(PlanError::Contradiction { campaign: plan.campaign.clone(), reason });
     };
     let requirements = requirements::load(&path)?;
-    if requirements::planned(&requirements) != plan.requirements {
+    let is_planned = requirements::planned(&requirements) == plan.requirements
+        && requirements.accounts == plan.accounts;
+    if !is_planned {
         return Err(PlanError::Form {
             path,
             reason: "it was changed after the campaign was planned".to_owned(),

@@ -7,6 +7,7 @@ use super::requirements::{self, Planned};
 use super::shared::{SharedText, SharedTexts};
 use super::shared_cases::SharedParts;
 use crate::plan::{CASES_MAX, Case, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system};
+use octant_account::Account;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::{Campaign, FactorSpec, Levels, Member};
 use octant_verdict::verdict::LimitCheck;
@@ -33,6 +34,7 @@ struct PlanMaker {
     draws: Draws,
     of_file: Vec<Planned>,
     not_by_test: Vec<String>,
+    accounts: Vec<Account>,
     scenarios: Vec<PlannedScenario>,
 }
 
@@ -66,7 +68,8 @@ impl PlanMaker {
             .map(|member| planned(member, &of_file, path))
             .collect::<Result<Vec<_>, _>>()?;
         let path = path.to_owned();
-        Ok(Self { campaign, path, grid, count, draws, of_file, not_by_test, scenarios })
+        let accounts = file.map(|file| file.accounts).unwrap_or_default();
+        Ok(Self { campaign, path, grid, count, draws, of_file, not_by_test, accounts, scenarios })
     }
 
     /// Makes the cases one after another. Additional replicates come at the end.
@@ -127,6 +130,7 @@ impl PlanMaker {
             factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
             requirements: self.of_file.clone(),
             not_by_test: self.not_by_test.clone(),
+            accounts: self.accounts.clone(),
             bundled: None,
             scenarios: self.scenarios.clone(),
             cases: Vec::new(),

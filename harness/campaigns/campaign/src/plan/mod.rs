@@ -19,6 +19,7 @@ pub use error::{PlanError, short};
 pub use planned::{Case, INPUTS, PlannedFile, PlannedScenario};
 
 use case_id::CaseId;
+use octant_account::Account;
 use octant_scenario::campaign::{LimitsSpec, StopSpec};
 use octant_statistics::proportion::Demand;
 use octant_verdict::requirement::EnsembleRequirement;
@@ -66,6 +67,9 @@ pub struct Plan {
     /// Requirements of that file that no run can verify.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_by_test: Vec<String>,
+    /// Accounts of the documents that this file came from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub accounts: Vec<Account>,
     /// Files of the campaign, if they came from a bundle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bundled: Option<BundledCampaign>,
@@ -99,6 +103,8 @@ struct HashedPlan<'a, C: ?Sized> {
     requirements: &'a [Planned],
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     not_by_test: &'a [String],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    accounts: &'a [Account],
     scenarios: Vec<PlannedScenario>,
     cases: &'a C,
 }
@@ -294,7 +300,7 @@ impl Plan {
     /// Returns what makes the id, with a list of cases in place of its own.
     fn hashed<'a, C: ?Sized>(&'a self, cases: &'a C) -> HashedPlan<'a, C> {
         let Self { schema, id: _, title, campaign: _, limits, stop, factors, .. } = self;
-        let Self { requirements, not_by_test, scenarios, .. } = self;
+        let Self { requirements, not_by_test, accounts, scenarios, .. } = self;
         let placeless = |scenario: &PlannedScenario| PlannedScenario {
             file: PathBuf::new(),
             files: BTreeMap::new(),
@@ -310,6 +316,7 @@ impl Plan {
             factors,
             requirements,
             not_by_test,
+            accounts,
             scenarios: scenarios.iter().map(placeless).collect(),
             cases,
         }
@@ -462,6 +469,7 @@ mod tests {
             factors: vec!["f".to_owned()],
             requirements: Vec::new(),
             not_by_test: Vec::new(),
+            accounts: Vec::new(),
             bundled: None,
             scenarios: Vec::new(),
             cases: (0..3).map(case).collect(),

@@ -2,6 +2,7 @@
 
 use crate::judge::trace::requirements_of;
 use crate::plan::Plan;
+use crate::plan::requirements::has_file;
 use octant_verdict::Comparison;
 use octant_verdict::requirement::{Check, Limit, Requirement, Requirements, Verification};
 
@@ -10,11 +11,10 @@ pub(super) fn requirements(plan: &Plan) -> (Requirements, Vec<String>) {
     let mut notes = Vec::new();
     let mut all = Requirements {
         title: plan.title.clone(),
-        document: Vec::new(),
-        definitions: Vec::new(),
-        requirements: Vec::new(),
+        accounts: plan.accounts.clone(),
+        ..Requirements::default()
     };
-    if !(plan.requirements.is_empty() && plan.not_by_test.is_empty()) {
+    if has_file(plan) {
         match requirements_of(plan) {
             Ok(found) => all = found,
             Err(error) => {

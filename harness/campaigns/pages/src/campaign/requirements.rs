@@ -32,6 +32,7 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
         @if !report.status.not_by_test.is_empty() {
             p { "Not verified by runs: " (report.status.not_by_test.join(", ")) "." }
         }
+        @for doubt in &report.status.doubts { p { "Requirements may be missing: " (doubt) } }
         @for note in &report.notes { p.hint { (note) } }
         @if let Some(remark) = report.units.remark() { p.hint { (remark) } }
         @if !all.is_empty() && report.combinations.len() > 1 { (by_combination(report)) }

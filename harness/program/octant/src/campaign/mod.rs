@@ -241,11 +241,15 @@ fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict,
             without_case: &trace.without_case,
             without_requirement: &trace.without_requirement,
             unknown: &trace.unknown,
+            doubts: &trace.doubts,
         })?;
     } else {
         let mut text = format!("{}: {}\n", plan.title, verdict.name());
         if status.besides != Verdict::Pass {
             text += &format!("apart from requirements: {}\n", status.besides.name());
+        }
+        for doubt in &trace.doubts {
+            text += &format!("requirements may be missing: {doubt}\n");
         }
         if status.open > 0 {
             text += &format!(
@@ -291,6 +295,9 @@ struct Traced<'a> {
     without_case: &'a [String],
     without_requirement: &'a [String],
     unknown: &'a [UnknownRequirement],
+    /// Reasons why requirements may be missing.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    doubts: &'a [String],
 }
 
 /// Finds a case of a plan.

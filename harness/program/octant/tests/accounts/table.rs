@@ -1,7 +1,8 @@
 //! One part of the page of accounts: its inputs are run, checked, and become rows.
 
 use crate::common::program::program;
-use serde_json::Value;
+use octant_requirements::exchange::Anything;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
@@ -111,8 +112,34 @@ impl Part {
         self.ends(case, &arguments)
     }
 
+    /// Converts a document of requirements, whose account is in the new file.
+    pub fn converts(&mut self, case: &Case<'_>) {
+        let (document, _) = case.files[0];
+        self.stated(case, &["requirements", "convert", document, "r.toml"], |folder| {
+            let text = std::fs::read_to_string(folder.join("r.toml")).ok()?;
+            let read = octant_verdict::file::read(&text, "r.toml", &Anything).unwrap();
+            let accounts = serde_json::to_value(&read.accounts).unwrap();
+            let doubts = read.doubts();
+            let verdict = if doubts.is_empty() { "pass" } else { "inconclusive" };
+            Some(json!({ "inputs": accounts, "verdict": verdict, "reasons": doubts }))
+        });
+    }
+
     /// Runs a command on an input, and checks how it ends.
     pub fn ends(&mut self, case: &Case<'_>, arguments: &[&str]) -> Parameters {
+        self.stated(case, arguments, |folder| {
+            let summary = std::fs::read(folder.join("out/summary.json")).ok();
+            summary.map(|bytes| serde_json::from_slice(&bytes).unwrap())
+        })
+    }
+
+    /// Runs a command on an input, and checks how it ends by what it wrote into its folder.
+    fn stated(
+        &mut self,
+        case: &Case<'_>,
+        arguments: &[&str],
+        summary: impl FnOnce(&Path) -> Option<Value>,
+    ) -> Parameters {
         let folder = tempfile::tempdir().unwrap();
         for (name, content) in case.files {
             std::fs::write(folder.path().join(name), content).unwrap();
@@ -120,8 +147,7 @@ impl Part {
         let output = program(arguments).current_dir(folder.path()).output().unwrap();
         let here = format!("{}/", folder.path().display());
         let said = String::from_utf8_lossy(&output.stderr).replace(&here, "");
-        let summary = std::fs::read(folder.path().join("out/summary.json")).ok();
-        let summary: Option<Value> = summary.map(|bytes| serde_json::from_slice(&bytes).unwrap());
+        let summary = summary(folder.path());
         let mut wrong = Vec::new();
         let found = Found::of(output.status.code(), &said, summary.as_ref());
         let (verdict, words) = match case.ends {
@@ -132,6 +158,17 @@ impl Part {
             Ends::Broken(words) => ("broken off", words),
         };
         let reason = found.reasons.iter().find(|reason| reason.contains(words));
+        let statuses: &[i32] = match case.ends {
+            Ends::Pass => &[0],
+            Ends::Inconclusive(_) => &[3],
+            _ => &[1, 2, 4],
+        };
+        if !output.status.code().is_some_and(|status| statuses.contains(&status)) {
+            wrong.push(format!(
+                "expected a status of {statuses:?}, found {:?}",
+                output.status.code()
+            ));
+        }
         if found.verdict != verdict || (!words.is_empty() && reason.is_none()) {
             wrong.push(format!(
                 "expected {verdict} {words:?}, found {} {:?}",

@@ -1,20 +1,23 @@
 //! Reading of Doorstop's documents.
 
-use super::yaml::{Node, Yaml, parse};
+use super::yaml::{Node, Yaml, parse, quoted};
 use super::{DoorstopFile, HEAD, SETTINGS, STANDARD, TITLE};
 use crate::error::{Imported, Note, listed};
 use crate::foreign::{Assembly, Attribute, FOREIGN_ID, NAME, Object, Place, TEXT};
+use crate::ledger::{LeftOut, Lost, Repair, Whereabouts};
 use crate::mapping::{DeclaredType, Mapping};
 use octant_verdict::requirement::{AttributeKind, Parent};
 use octant_verdict::text::{control, normal};
 use octant_verdict::{RequirementsError, RequirementsProblem};
+use std::borrow::Cow;
 use std::rc::Rc;
 
-/// Reads the files of a folder of Doorstop: `.doorstop.yml` and the items, by their names.
+/// Reads the files of a folder of Doorstop: `.doorstop.yml` and the items, by their names. An item that can't be read is
+/// left out: the account counts it, and a note names it.
 ///
 /// # Errors
-/// If there is no `.doorstop.yml`, a file isn't YAML or no mapping, with file and line, or the mapping names
-/// what no item has.
+/// If there is no `.doorstop.yml`, it isn't YAML or no mapping, with file and line, or the mapping names what no item
+/// has.
 pub fn read(
     files: &[DoorstopFile],
     folder: &str,
@@ -22,14 +25,32 @@ pub fn read(
 ) -> Result<Imported, RequirementsError> {
     let own = Mapping::own();
     let mapping = if mapping.is_usual() { &own } else { mapping };
-    let mut reader = Reader { folder, mapping, assembly: Assembly::new(mapping), stamps: false };
+    let assembly = Assembly::new(mapping, folder);
+    let mut reader = Reader { folder, mapping, assembly, stamps: false };
     let Some((_, settings)) = files.iter().find(|(name, _)| name == SETTINGS) else {
         return Err(reader.wrong("", 1, format!("there is no {SETTINGS} in the folder")));
     };
-    reader.settings(settings)?;
+    let is_markdown = reader.settings(settings)?;
     let mut items = Vec::new();
     for (name, text) in files.iter().filter(|(name, _)| name != SETTINGS) {
-        items.push(reader.item(name, text)?);
+        let is_of_markdown = name.ends_with(".md");
+        if is_of_markdown != is_markdown {
+            let format = if is_markdown { "markdown" } else { "yaml" };
+            let message = format!("{name} is not read: the items are in itemformat {format}");
+            reader.assembly.notes.push(Note::new(0, message));
+            continue;
+        }
+        let text = if is_markdown { markdown(text) } else { Ok(Cow::Borrowed(text.as_str())) };
+        let read = text.map_err(|message| (1, message)).and_then(|text| reader.item(name, &text));
+        match read {
+            Ok(item) => items.push(item),
+            Err((line, message)) => {
+                let id = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
+                let at = Whereabouts::new(id, name, line);
+                let message = format!("can't be read: {message}");
+                reader.assembly.lost(&Lost { why: LeftOut::Damaged, at, message });
+            }
+        }
     }
     items.sort_by(|a, b| {
         let heading = b.heading.cmp(&a.heading);
@@ -69,30 +90,23 @@ impl Reader<'_> {
         RequirementsError::one(&name, RequirementsProblem::new((line, 1), "", message))
     }
 
-    fn map(&self, file: &str, text: &str) -> Result<Node, RequirementsError> {
-        let node = parse(text).map_err(|(line, message)| self.wrong(file, line, message))?;
-        match node.value {
-            Yaml::Map(_) => Ok(node),
-            _ => {
-                let message =
-                    format!("found {}, expected a mapping of attributes", node.describe());
-                Err(self.wrong(file, node.line, message))
-            }
-        }
-    }
-
-    fn settings(&mut self, text: &str) -> Result<(), RequirementsError> {
-        let root = self.map(SETTINGS, text)?;
+    /// Reads the settings; returns whether the items are in Markdown.
+    fn settings(&mut self, text: &str) -> Result<bool, RequirementsError> {
+        let root = map(text).map_err(|(line, message)| self.wrong(SETTINGS, line, message))?;
         let setting = |name: &str| root.get("settings")?.get(name)?.text();
         let found = &mut self.assembly.found;
         for (name, key) in HEAD {
             let value = setting(name).map(normal).filter(|value| !value.is_empty());
             found.document.extend(value.map(|value| (key.to_owned(), value.replace('\n', " "))));
         }
-        if setting("itemformat").is_some_and(|format| format != "yaml") {
-            let message = "the items are in Markdown, expected itemformat: yaml".to_owned();
-            return Err(self.wrong(SETTINGS, 1, message));
-        }
+        let is_markdown = match setting("itemformat") {
+            None | Some("yaml") => false,
+            Some("markdown") => true,
+            Some(other) => {
+                let message = format!("itemformat is {other:?}, expected \"yaml\" or \"markdown\"");
+                return Err(self.wrong(SETTINGS, 1, message));
+            }
+        };
         let title = root.get("extensions").and_then(|e| e.get(TITLE)).and_then(Node::text);
         let title = title.or_else(|| setting("prefix")).map(normal).unwrap_or_default();
         found.title =
@@ -101,7 +115,7 @@ impl Reader<'_> {
             let message = "the settings of attributes are left out";
             self.assembly.notes.push(Note::new(0, message).in_file(SETTINGS));
         }
-        Ok(())
+        Ok(is_markdown)
     }
 
     /// Name of an attribute for the mapping: that of ReqIF without a mapping file.
@@ -114,22 +128,22 @@ impl Reader<'_> {
         }
     }
 
-    fn item(&mut self, file: &str, text: &str) -> Result<Item, RequirementsError> {
-        let root = self.map(file, text)?;
+    fn item(&mut self, file: &str, text: &str) -> Result<Item, (usize, String)> {
+        let root = map(text)?;
         let id = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
         let truth = |name: &str, usual: bool| match root.get(name) {
             None => Ok(usual),
             Some(node) => node.truth().ok_or((node.line, format!("{name} is no truth value"))),
         };
-        let fail = |(line, message): (usize, String)| self.wrong(file, line, message);
-        let normative = truth("normative", true).map_err(fail)?;
-        let active = truth("active", true).map_err(fail)?;
-        let (level, ends) = level(root.get("level")).map_err(fail)?;
+        let normative = truth("normative", true)?;
+        let active = truth("active", true)?;
+        let (level, ends) = level(root.get("level"))?;
         let mut object = Object {
             file: file.to_owned(),
             line: root.line,
             identifier: id.to_owned(),
             has_identifier: true,
+            is_title_enough: true,
             attributes: vec![self.text_attribute("id", id, root.line)],
             ..Object::default()
         };
@@ -140,18 +154,18 @@ impl Reader<'_> {
             };
             object.attributes.push(self.text_attribute(name, &text, node.line));
         }
-        if truth("derived", false).map_err(fail)? {
+        if truth("derived", false)? {
             let mut derived = self.text_attribute("derived", "true", root.line);
             derived.kind = AttributeKind::Boolean;
             object.attributes.push(derived);
         }
-        self.extended(&root, &mut object, file);
+        self.extended(&root, &mut object);
         let control = object.attributes.iter().find_map(|attribute| {
             let c = attribute.values.iter().find_map(|text| control(text))?;
             Some((attribute.line, format!("{} has the control character {c:?}", attribute.name)))
         });
         if let Some((line, message)) = control {
-            return Err(self.wrong(file, line, message));
+            return Err((line, message));
         }
         self.stamps |= root.get("reviewed").and_then(Node::text).is_some();
         Ok(Item {
@@ -174,7 +188,7 @@ impl Reader<'_> {
     }
 
     /// Adds the attributes that a project added to those of Doorstop.
-    fn extended(&mut self, root: &Node, object: &mut Object, file: &str) {
+    fn extended(&self, root: &Node, object: &mut Object) {
         let Yaml::Map(entries) = &root.value else { return };
         // Doorstop sorts them when it writes.
         let mut entries: Vec<&(String, Node)> = entries.iter().collect();
@@ -190,8 +204,11 @@ impl Reader<'_> {
                 Yaml::Map(_) => None,
             };
             let Some(mut values) = values else {
-                let message = format!("{name} is left out, because it is no text");
-                self.assembly.notes.push(Note::new(node.line, message).in_file(file));
+                object.repairs.push(Repair {
+                    kind: "with attributes that are left out",
+                    detail: format!("{name}, which is no text"),
+                    is_doubt: false,
+                });
                 continue;
             };
             values.retain(|text| !text.is_empty());
@@ -251,22 +268,21 @@ impl Reader<'_> {
                 item.level.len() > level.len() && item.level.starts_with(level)
             });
             if item.heading {
+                let notes = self.assembly.ledger.kept(&item.object.at(), &item.object.repairs);
+                self.assembly.notes.extend(notes);
                 above.push((item.level, Ok(title(&item.object))));
                 continue;
             }
             if !item.is_requirement {
-                inactive.push(item.object.identifier.clone());
+                self.assembly.ledger.left_out(LeftOut::Inactive, &item.object.at());
+                inactive.push(item.object.identifier);
                 continue;
             }
             let section = above.iter().filter_map(|(_, above)| above.as_ref().ok().cloned());
             let under = above.iter().rev().find_map(|(_, above)| above.as_ref().err().cloned());
             let place = Place { section: section.collect(), under };
             item.object.declared = Rc::clone(&names);
-            let (folder, file) = (self.folder, item.object.file.clone());
-            let added = self.assembly.add(item.object, place, item.parents);
-            let added =
-                added.map_err(|e| RequirementsError { file: format!("{folder}/{file}"), ..e })?;
-            if let Some(id) = added {
+            if let Some(id) = self.assembly.add(item.object, place, item.parents) {
                 above.push((item.level, Err(id)));
             }
         }
@@ -280,6 +296,42 @@ impl Reader<'_> {
         }
         Ok(self.assembly.finish())
     }
+}
+
+/// Parses the mapping that a file is; errors have a line.
+fn map(text: &str) -> Result<Node, (usize, String)> {
+    let node = parse(text)?;
+    match node.value {
+        Yaml::Map(_) => Ok(node),
+        _ => {
+            let found = node.describe();
+            Err((node.line, format!("found {found}, expected a mapping of attributes")))
+        }
+    }
+}
+
+/// Item in Markdown as one in YAML: attributes between two lines `---`, then the header as a heading, and the text.
+fn markdown(text: &str) -> Result<Cow<'_, str>, String> {
+    let text = text.replace("\r\n", "\n");
+    let head = text.trim_start().strip_prefix("---\n").and_then(|rest| {
+        let (head, body) = rest.split_once("\n---")?;
+        Some((head, body.split_once('\n').map_or("", |(_, body)| body)))
+    });
+    let Some((head, body)) = head else {
+        return Err("found no attributes between two lines ---".to_owned());
+    };
+    let body = body.trim();
+    let (header, body) = match body.strip_prefix("# ") {
+        Some(rest) => rest.split_once('\n').unwrap_or((rest, "")),
+        None => ("", body),
+    };
+    let mut item = format!("\n{head}\n");
+    for (name, text) in [("header", header), ("text", body)] {
+        if !text.trim().is_empty() {
+            item += &format!("{name}: {}\n", quoted(text.trim()));
+        }
+    }
+    Ok(Cow::Owned(item))
 }
 
 /// Title of a heading: its header, or the first line of its text.

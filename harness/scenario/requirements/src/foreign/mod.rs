@@ -9,13 +9,13 @@ mod object;
 pub(crate) use object::{Attribute, Object, Role};
 
 use crate::error::{Imported, Note, listed};
+use crate::ledger::{Ledger, LeftOut, Lost};
 use crate::mapping::{IDENTIFIER, Mapping, RequirementPart};
 use definitions::Definitions;
 use octant_verdict::fields;
 use octant_verdict::requirement::{
     ForeignAttribute, FormattedText, Parent, Requirement, Requirements, Verification,
 };
-use octant_verdict::{RequirementsError, RequirementsProblem};
 use std::collections::{HashMap, HashSet};
 
 /// Names of ReqIF that the writer gives to parts of a requirement.
@@ -36,6 +36,7 @@ pub(crate) struct Assembly<'a> {
     mapping: &'a Mapping,
     pub(crate) found: Requirements,
     pub(crate) notes: Vec<Note>,
+    pub(crate) ledger: Ledger,
     definitions: Definitions,
     /// File and line of each id.
     ids: HashMap<String, (String, usize)>,
@@ -50,9 +51,10 @@ pub(crate) struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    pub(crate) fn new(mapping: &'a Mapping) -> Self {
+    pub(crate) fn new(mapping: &'a Mapping, document: &str) -> Self {
         Self {
             mapping,
+            ledger: Ledger::new(document),
             found: Requirements::default(),
             notes: Vec::new(),
             definitions: Definitions::default(),
@@ -64,13 +66,22 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Notes that an object is no requirement.
+    /// Leaves out an object of which no requirement can be made.
+    pub(crate) fn lost(&mut self, lost: &Lost) {
+        let note = self.ledger.lost(lost);
+        self.notes.push(note);
+    }
+
+    /// Leaves out an object that is no requirement.
     pub(crate) fn informative(&mut self, object: &Object) {
+        self.ledger.left_out(LeftOut::Information, &object.at());
         self.informative.push(object.name(self.mapping));
     }
 
-    /// Notes what a heading has beside its title and id, which is all that a section keeps.
+    /// Uses a heading, of which a section keeps the title and the id, and notes what else it has.
     pub(crate) fn heading(&mut self, object: &Object) {
+        let notes = self.ledger.kept(&object.at(), &object.repairs);
+        self.notes.extend(notes);
         let parts = [RequirementPart::Id, RequirementPart::Title, RequirementPart::Heading];
         let is_kept = |attribute: &Attribute| {
             let of =
@@ -85,51 +96,48 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Adds the requirement that an object is, or a note why it is none; returns its id.
-    ///
-    /// # Errors
-    /// If its id is there already.
+    /// Adds the requirement that an object is, or leaves it out with a note; returns its id.
     pub(crate) fn add(
         &mut self,
         mut object: Object,
         place: Place,
         parents: Vec<Parent>,
-    ) -> Result<Option<String>, RequirementsError> {
-        let (line, file) = (object.line, object.file.clone());
-        let identifier = object.identifier.clone();
-        let skip = |what: &str| {
-            let message = format!("the object {identifier} has {what}: it is left out");
-            Note::new(line, message).in_file(&file).skipped()
-        };
+    ) -> Option<String> {
+        let at = object.at();
+        let lost = |why: LeftOut, message: String| Lost { why, at: at.clone(), message };
         let Some(id) = self.id(&mut object) else {
-            self.notes.push(skip("no id"));
-            return Ok(None);
+            self.lost(&lost(LeftOut::NoId, "has no id".to_owned()));
+            return None;
         };
-        if let Some((file, first)) = self.ids.get(&id) {
-            let file = if file.is_empty() { String::new() } else { format!("{file}, ") };
-            let found = format!("the id {id:?} is there a second time, the first is in {file}");
-            let message = match first {
-                0 => format!("{}; expected unique ids", found.trim_end_matches(", ")),
-                first => format!("{found}line {first}; expected unique ids"),
+        if let Some((file, line)) = self.ids.get(&id) {
+            let place = match (file.as_str(), line) {
+                ("", 0) => String::new(),
+                ("", line) => format!(", that of line {line}"),
+                (file, 0) => format!(", that of {file}"),
+                (file, line) => format!(", that of {file}, line {line}"),
             };
-            let at = (line.max(1), 1);
-            let problem = RequirementsProblem::new(at, "", message);
-            return Err(RequirementsError::one(&object.file, problem));
+            let message = format!("has the id {id:?} of another{place}");
+            self.lost(&lost(LeftOut::Again, message));
+            return None;
         }
-        let title = self.title(&mut object);
+        let (title, formatted_title) = self.title(&mut object);
         let Some((text, formatted)) = self.text(&mut object, &id, title.as_deref()) else {
-            self.notes.push(skip("no text"));
-            return Ok(None);
+            self.lost(&lost(LeftOut::NoText, "has no text".to_owned()));
+            return None;
         };
-        self.ids.insert(id.clone(), (file, line));
-        let requirement = self.requirement(object, id.clone(), (text, formatted), title);
+        self.ids.insert(id.clone(), (object.file.clone(), object.line));
+        let repairs = std::mem::take(&mut object.repairs);
+        let requirement =
+            self.requirement(object, &id, (text, title), [formatted, formatted_title]);
+        let notes = self.ledger.kept(&at, &repairs);
+        self.notes.extend(notes);
         self.found.requirements.push(Requirement {
             section: place.section,
             under: place.under,
             parents,
             ..requirement
         });
-        Ok(Some(id))
+        Some(id)
     }
 
     fn id(&mut self, object: &mut Object) -> Option<String> {
@@ -153,15 +161,14 @@ impl<'a> Assembly<'a> {
         object.has_identifier.then(|| object.identifier.clone())
     }
 
-    fn title(&mut self, object: &mut Object) -> Option<String> {
+    /// Title of an object, and its formatting.
+    fn title(&self, object: &mut Object) -> (Option<String>, Option<String>) {
         let found = object.take(self.mapping, RequirementPart::Title);
-        if found.as_ref().is_some_and(|found| found.formatted.is_some()) {
-            let message =
-                format!("the formatting of the title of {} is left out", object.identifier);
-            self.notes.push(Note::new(object.line, message).in_file(&object.file));
-        }
-        let title = found.map(|found| found.text);
-        title.or_else(|| object.long_name.take()).map(|title| title.replace('\n', " "))
+        let (title, formatted) = match found {
+            Some(found) => (Some(found.text), found.formatted),
+            None => (object.long_name.take(), None),
+        };
+        (title.map(|title| title.replace('\n', " ")), formatted)
     }
 
     /// Text of an object, and its formatting; its title, where objects of its type have no text.
@@ -173,6 +180,9 @@ impl<'a> Assembly<'a> {
     ) -> Option<(String, Option<String>)> {
         if let Some(found) = object.take(self.mapping, RequirementPart::Text) {
             return Some((found.text, found.formatted));
+        }
+        if object.is_title_enough {
+            return Some((title?.to_owned(), None));
         }
         let kind = object.kind.clone();
         if object.declares(self.mapping, RequirementPart::Text)
@@ -192,15 +202,16 @@ impl<'a> Assembly<'a> {
     fn requirement(
         &mut self,
         mut object: Object,
-        id: String,
-        (text, formatted): (String, Option<String>),
-        title: Option<String>,
+        id: &str,
+        (text, title): (String, Option<String>),
+        [formatted, formatted_title]: [Option<String>; 2],
     ) -> Requirement {
         let mut formats: Vec<FormattedText> = Vec::new();
         let mut format = |name: &str, xhtml: Option<String>| {
             let name = name.to_owned();
             formats.extend(xhtml.map(|xhtml| FormattedText { name, xhtml }));
         };
+        format(NAME, formatted_title);
         format(TEXT, formatted);
         let mut taken = |part: RequirementPart, name: &str| {
             let found = object.take(self.mapping, part)?;
@@ -209,7 +220,7 @@ impl<'a> Assembly<'a> {
         };
         let clause = taken(RequirementPart::Clause, fields::CLAUSE);
         let rationale = taken(RequirementPart::Rationale, fields::RATIONALE);
-        let verification = self.verification(&mut object, &id);
+        let verification = self.verification(&mut object, id);
         let mut attributes = Vec::new();
         for attribute in object.attributes {
             let name = self.free_name(&attribute.name, &verification, &object.file, object.line);
@@ -227,7 +238,7 @@ impl<'a> Assembly<'a> {
             identifier: object.kept_identifier,
             attributes,
             formatted: formats,
-            ..Requirement::new(&id, &text, verification)
+            ..Requirement::new(id, &text, verification)
         }
     }
 
@@ -270,17 +281,19 @@ impl<'a> Assembly<'a> {
                 places.insert(field, (index, part));
             }
         }
-        let of = |field: &str| {
-            let (index, part) = *places.get(field)?;
-            let attribute = object.attributes.get(index)?;
-            let value = attribute.values.first()?;
-            Some((attribute.line, self.mapping.value(&object.kind, part, value)))
-        };
+        let mut values = HashMap::new();
+        for (field, (index, part)) in &places {
+            let Some(attribute) = object.attributes.get(*index) else { continue };
+            let of = |value: &String| self.mapping.value(&object.kind, *part, value).to_owned();
+            let of: Vec<String> = attribute.values.iter().map(of).collect();
+            values.insert(*field, (attribute.line, of.join(", ")));
+        }
+        let of = |field: &str| values.get(field).map(|(line, value)| (*line, value.as_str()));
         match fields::verification(&of) {
             Ok(Some((verification, used))) => {
                 let mut used: Vec<usize> =
                     used.iter().filter_map(|field| Some(places.get(field)?.0)).collect();
-                // The first of several methods counts; the attribute keeps all of them.
+                // The attribute keeps all of several methods.
                 used.retain(|index| object.attributes[*index].values.len() == 1);
                 used.sort_unstable();
                 for index in used.into_iter().rev() {
@@ -332,6 +345,11 @@ impl<'a> Assembly<'a> {
                 self.notes.push(Note::new(0, format!("{words}: {}", listed(ids))));
             }
         }
-        Imported { requirements: self.found, notes: self.notes, attachments: Vec::new() }
+        Imported {
+            requirements: self.found,
+            notes: self.notes,
+            attachments: Vec::new(),
+            account: self.ledger.finish(),
+        }
     }
 }

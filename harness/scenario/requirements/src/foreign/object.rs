@@ -1,5 +1,6 @@
 //! An object of another tool.
 
+use crate::ledger::{Repair, Whereabouts};
 use crate::mapping::{IDENTIFIER, Mapping, RequirementPart};
 use octant_verdict::requirement::AttributeKind;
 
@@ -33,6 +34,10 @@ pub(crate) struct Object {
     pub(crate) attributes: Vec<Attribute>,
     /// Names of the attributes that objects of its type can have.
     pub(crate) declared: std::rc::Rc<Vec<String>>,
+    /// True if its title is what it requires, where it has no text.
+    pub(crate) is_title_enough: bool,
+    /// Repairs so far.
+    pub(crate) repairs: Vec<Repair>,
 }
 
 /// A text that was taken out of an object.
@@ -53,6 +58,22 @@ pub(crate) enum Role {
 }
 
 impl Object {
+    /// Place for accounts and notes.
+    pub(crate) fn at(&self) -> Whereabouts {
+        Whereabouts::new(self.identifier.clone(), &self.file, self.line)
+    }
+
+    /// Returns whether another object has the same content.
+    pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
+        let same = |(one, two): (&Attribute, &Attribute)| {
+            one.name == two.name && one.values == two.values && one.formatted == two.formatted
+        };
+        self.kind == other.kind
+            && self.long_name == other.long_name
+            && self.attributes.len() == other.attributes.len()
+            && self.attributes.iter().zip(&other.attributes).all(same)
+    }
+
     /// Place of the attribute that holds a part.
     pub(crate) fn index(&self, mapping: &Mapping, part: RequirementPart) -> Option<usize> {
         let ranked = self.attributes.iter().enumerate().filter_map(|(index, attribute)| {

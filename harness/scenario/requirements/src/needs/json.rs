@@ -1,12 +1,12 @@
-//! The outer objects of the file, in their order and without a key twice.
+//! The outer objects of the file, in their order.
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// An object whose keys keep their order, and of which none is there twice.
+/// An object whose keys keep their order. A key can be there twice.
 #[derive(Debug)]
 pub(super) struct Ordered<T>(pub(super) Vec<(String, T)>);
 
@@ -28,14 +28,8 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Ordered<T> {
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
                 let mut entries: Vec<(String, T)> = Vec::new();
-                let mut seen = std::collections::HashSet::new();
-                while let Some(key) = map.next_key::<String>()? {
-                    if !seen.insert(key.clone()) {
-                        let message =
-                            format!("the id {key:?} is there a second time, expected unique ids");
-                        return Err(A::Error::custom(message));
-                    }
-                    entries.push((key, map.next_value()?));
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
                 }
                 Ok(Ordered(entries))
             }

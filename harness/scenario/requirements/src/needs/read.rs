@@ -5,6 +5,8 @@ use super::schema::NeedSchema;
 use super::{COMPUTED, CORE, FORMAT, LINKS, NO_REQUIREMENTS, PARENT_NEEDS, REQ, VERSION};
 use crate::error::{Imported, Note, listed};
 use crate::foreign::{Assembly, Attribute, FOREIGN_ID, NAME, Object, Place, Role, TEXT};
+use crate::ledger::{LeftOut, Lost, Repair, Whereabouts};
+use crate::lines::Lines;
 use crate::mapping::{DeclaredType, Mapping};
 use crate::sdoc::markup;
 use octant_base::names::suggestion;
@@ -12,14 +14,13 @@ use octant_verdict::requirement::{AttributeKind, Parent};
 use octant_verdict::text::{control, normal};
 use octant_verdict::{RequirementsError, RequirementsProblem};
 use serde_json::Value;
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
 use std::rc::Rc;
 
 /// Reads a `needs.json`: the needs of its current version.
 ///
 /// # Errors
-/// If the text isn't JSON, or JSON of another form; if an id is there twice; or if the mapping names what
-/// the file doesn't have.
+/// If the text isn't JSON, or JSON of another form, or if the mapping names what the file doesn't have.
 pub fn read(text: &str, file: &str, mapping: &Mapping) -> Result<Imported, RequirementsError> {
     let fail = |line: usize, column: usize, message: String| {
         RequirementsError::one(file, RequirementsProblem::new((line, column), "", message))
@@ -76,6 +77,12 @@ type Current = ((String, String), NeedsVersion, Vec<String>);
 
 fn current(current: String, file: NeedsFile) -> Result<Current, String> {
     let mut versions = file.versions.unwrap_or_default().0;
+    let mut seen = HashSet::new();
+    if let Some((name, _)) = versions.iter().find(|(name, _)| !seen.insert(name.clone())) {
+        return Err(format!(
+            "the version {name:?} is there a second time, expected unique versions"
+        ));
+    }
     let Some(at) = versions.iter().position(|(name, _)| *name == current) else {
         let names: Vec<&str> = versions.iter().map(|(name, _)| name.as_str()).collect();
         let known = suggestion(&current, names.iter().copied(), "known");
@@ -94,15 +101,14 @@ fn current(current: String, file: NeedsFile) -> Result<Current, String> {
 }
 
 struct Reader<'a> {
-    text: &'a str,
     file: &'a str,
     mapping: &'a Mapping,
     assembly: Assembly<'a>,
     escaped: bool,
     /// Fields that are left out, because sphinx-needs computes them.
     computed: BTreeSet<String>,
-    /// Offset of the need that was found last.
-    at: usize,
+    /// Lines of the objects of the file, by their keys.
+    keys: HashMap<String, VecDeque<usize>>,
 }
 
 /// A need as an object, with its links.
@@ -116,13 +122,12 @@ struct Need {
 impl<'a> Reader<'a> {
     fn new(text: &'a str, file: &'a str, mapping: &'a Mapping, version: &NeedsVersion) -> Self {
         Self {
-            text,
             file,
             mapping,
-            assembly: Assembly::new(mapping),
+            assembly: Assembly::new(mapping, file),
             escaped: version.octant_escaped,
             computed: BTreeSet::new(),
-            at: text.find("\"needs\"").unwrap_or(0),
+            keys: keys(text),
         }
     }
 
@@ -144,20 +149,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Line of a need, from 1.
+    /// Line of a need, from 1; 0 if it isn't found.
     fn line(&mut self, id: &str) -> usize {
-        let quoted = Value::from(id).to_string();
-        let mut from = self.at;
-        while let Some(found) = self.text.get(from..).and_then(|rest| rest.find(&quoted)) {
-            let end = from + found + quoted.len();
-            let rest = self.text.get(end..).unwrap_or_default().trim_start();
-            if rest.strip_prefix(':').is_some_and(|rest| rest.trim_start().starts_with('{')) {
-                self.at = end;
-                return self.text[..end].bytes().filter(|b| *b == b'\n').count() + 1;
-            }
-            from = end;
-        }
-        0
+        self.keys.get_mut(id).and_then(VecDeque::pop_front).unwrap_or(0)
     }
 
     fn needs(mut self, version: NeedsVersion) -> Result<Imported, RequirementsError> {
@@ -168,7 +162,7 @@ impl<'a> Reader<'a> {
             let problem = RequirementsProblem::new((1, 1), "", message);
             return Err(RequirementsError::one(self.file, problem));
         }
-        let mut needs = Vec::new();
+        let (mut needs, mut ids): (Vec<Need>, HashMap<String, usize>) = Default::default();
         for (id, mut value) in version.needs.unwrap_or_default().0 {
             if version.needs_defaults_removed
                 && let Some(fields) = value.as_object_mut()
@@ -178,16 +172,22 @@ impl<'a> Reader<'a> {
                 }
             }
             let line = self.line(&id);
+            let at = Whereabouts::new(&*id, "", line);
+            if let Some(first) = ids.get(&id) {
+                let message = format!("is there a second time, the first is in line {first}");
+                self.assembly.lost(&Lost { why: LeftOut::Again, at, message });
+                continue;
+            }
             match self.need(&id, &value, line, &schema) {
                 Ok(need) => needs.push(need),
                 Err(message) => {
-                    let message = format!("the need {id} {message}: it is left out");
-                    self.assembly.notes.push(Note::new(line, message).skipped());
+                    self.assembly.lost(&Lost { why: LeftOut::Damaged, at, message });
                 }
             }
+            ids.insert(id, line);
         }
         self.mapping.check(&declared(&needs))?;
-        self.assemble(needs)?;
+        self.assemble(needs);
         if !self.computed.is_empty() {
             let names: Vec<String> = std::mem::take(&mut self.computed).into_iter().collect();
             self.note(format!("computed by sphinx-needs, and left out: {}", names.join(", ")));
@@ -212,6 +212,7 @@ impl<'a> Reader<'a> {
                 line,
                 identifier: id.to_owned(),
                 has_identifier: true,
+                is_title_enough: true,
                 kind,
                 attributes: vec![attribute(
                     self.named("id"),
@@ -244,6 +245,9 @@ impl<'a> Reader<'a> {
                         need.object.kept_identifier = found.values.first().cloned();
                     }
                     Ok(found) => need.object.attributes.extend(found),
+                    Err(message) if ["title", "content", "description"].contains(&&**name) => {
+                        return Err(format!("has {message}"));
+                    }
                     Err(message) => lost.push(message),
                 }
             }
@@ -254,8 +258,11 @@ impl<'a> Reader<'a> {
             lost.push(format!("the markup of its text, {other}"));
         }
         if !lost.is_empty() {
-            let message = format!("{id}: left out: {}", lost.join(", "));
-            self.assembly.notes.push(Note::new(line, message));
+            need.object.repairs.push(Repair {
+                kind: "with fields that are left out",
+                detail: lost.join(", "),
+                is_doubt: false,
+            });
         }
         Ok(need)
     }
@@ -314,7 +321,7 @@ impl<'a> Reader<'a> {
         Ok((!texts.is_empty()).then(|| attribute(self.named(name), kind, texts, line)))
     }
 
-    fn assemble(&mut self, needs: Vec<Need>) -> Result<(), RequirementsError> {
+    fn assemble(&mut self, needs: Vec<Need>) {
         let declared = declared(&needs);
         let mut before: HashSet<String> = HashSet::new();
         for mut need in needs {
@@ -334,9 +341,7 @@ impl<'a> Reader<'a> {
             }
             parents.extend(need.parents);
             let place = Place { section: need.section, under };
-            let add = self.assembly.add(need.object, place, parents);
-            let added =
-                add.map_err(|error| RequirementsError { file: self.file.to_owned(), ..error })?;
+            let added = self.assembly.add(need.object, place, parents);
             if let Some(last) =
                 self.assembly.found.requirements.last_mut().filter(|_| added.is_some())
                 && last.kind.as_deref() == Some(REQ)
@@ -345,12 +350,42 @@ impl<'a> Reader<'a> {
             }
             before.extend(added);
         }
-        Ok(())
     }
 }
 
 fn attribute(name: &str, kind: AttributeKind, values: Vec<String>, line: usize) -> Attribute {
     Attribute { name: name.to_owned(), kind, values, formatted: None, line }
+}
+
+/// Lines of the objects after the first `"needs"`, by their keys.
+fn keys(text: &str) -> HashMap<String, VecDeque<usize>> {
+    let lines = Lines::of(text);
+    let mut keys: HashMap<String, VecDeque<usize>> = HashMap::new();
+    let mut at = text.find("\"needs\"").unwrap_or(text.len());
+    while let Some(found) = text[at..].find('"') {
+        let begin = at + found;
+        let Some(end) = end_of_string(text, begin) else { break };
+        let rest = text[end..].trim_start();
+        let is_key = rest.strip_prefix(':').is_some_and(|rest| rest.trim_start().starts_with('{'));
+        if is_key && let Ok(key) = serde_json::from_str::<String>(&text[begin..end]) {
+            keys.entry(key).or_default().push_back(lines.number(begin));
+        }
+        at = end;
+    }
+    keys
+}
+
+/// End of a JSON string that begins with a quote.
+fn end_of_string(text: &str, begin: usize) -> Option<usize> {
+    let mut at = begin + 1;
+    loop {
+        at += text.get(at..)?.find(['"', '\\'])?;
+        if text.as_bytes().get(at) == Some(&b'"') {
+            return Some(at + 1);
+        }
+        // The escaped character, which is one of ASCII.
+        at += 2;
+    }
 }
 
 fn is_empty(value: &Value) -> bool {

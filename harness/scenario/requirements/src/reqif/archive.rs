@@ -9,6 +9,7 @@ use crate::error::{Attachment, ExportError, Imported, Note};
 use crate::mapping::Mapping;
 use octant_verdict::RequirementsError;
 use octant_verdict::requirement::Requirements;
+use std::collections::HashSet;
 use std::io::{Cursor, Read as _, Write as _};
 use zip::ZipArchive;
 use zip::result::ZipError;
@@ -96,6 +97,7 @@ fn missing(imported: &mut Imported, attachments: &[Attachment], files: &[(String
         .iter()
         .map(|(name, _)| name.rsplit_once('/').map_or("", |(folder, _)| folder))
         .collect();
+    let names: HashSet<&str> = attachments.iter().map(|a| a.name.as_str()).collect();
     let mut notes = Vec::new();
     for requirement in &imported.requirements.requirements {
         for text in &requirement.formatted {
@@ -103,8 +105,7 @@ fn missing(imported: &mut Imported, attachments: &[Attachment], files: &[(String
                 let data = data.strip_prefix("./").unwrap_or(&data).replace('\\', "/");
                 let there = |folder: &str| {
                     let slash = if folder.is_empty() { "" } else { "/" };
-                    let name = format!("{folder}{slash}{data}");
-                    attachments.iter().any(|attachment| attachment.name == name)
+                    names.contains(&*format!("{folder}{slash}{data}"))
                 };
                 if !data.contains("://") && !folders.iter().any(|folder| there(folder)) {
                     let message = format!(
@@ -135,6 +136,7 @@ fn unpacked(bytes: &[u8], archive: &str) -> Result<Vec<(String, Vec<u8>)>, ReqIf
         return Err(limit(format!("it has {} entries", zip.len()), ENTRIES.to_string()));
     }
     let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    let mut known = HashSet::new();
     let mut left = BYTES;
     for index in 0..zip.len() {
         let name = match zip.name_for_index(index) {
@@ -151,7 +153,7 @@ fn unpacked(bytes: &[u8], archive: &str) -> Result<Vec<(String, Vec<u8>)>, ReqIf
             continue;
         }
         let name = name.replace('\\', "/");
-        if files.iter().any(|(known, _)| *known == name) {
+        if !known.insert(name.clone()) {
             return Err(damaged(format!("the entry {name:?} is there twice")));
         }
         let mut content = Vec::new();

@@ -5,7 +5,14 @@ use octant_verdict::requirement::Requirement;
 /// Makes an identifier from the id for people: letters, digits, `-` and `.` stay, other characters
 /// become their number.
 pub(super) fn identifier(id: &str) -> String {
-    let mut out = String::from("octant-");
+    encoded("octant-", id)
+}
+
+/// Beginning of an identifier that stands for one which XML doesn't take, as a MID that begins with a digit.
+const ENCODED: &str = "octant_id-";
+
+fn encoded(prefix: &str, id: &str) -> String {
+    let mut out = String::from(prefix);
     for c in id.chars() {
         match c {
             c if c.is_ascii_alphanumeric() || c == '-' || c == '.' => out.push(c),
@@ -16,7 +23,27 @@ pub(super) fn identifier(id: &str) -> String {
 }
 
 pub(super) fn object_id(requirement: &Requirement) -> String {
-    requirement.identifier.clone().unwrap_or_else(|| identifier(&requirement.id))
+    match &requirement.identifier {
+        None => identifier(&requirement.id),
+        Some(own) if legal(own) && !own.starts_with(ENCODED) => own.clone(),
+        Some(own) => encoded(ENCODED, own),
+    }
+}
+
+/// Identifier that one of a file stands for: itself, but for those that [`object_id`] made.
+pub(super) fn decoded(id: &str) -> String {
+    let Some(rest) = id.strip_prefix(ENCODED) else { return id.to_owned() };
+    let mut out = String::new();
+    let mut parts = rest.split('_');
+    out.push_str(parts.next().unwrap_or_default());
+    while let (Some(code), Some(text)) = (parts.next(), parts.next()) {
+        let Some(c) = u32::from_str_radix(code, 16).ok().and_then(char::from_u32) else {
+            return id.to_owned();
+        };
+        out.push(c);
+        out.push_str(text);
+    }
+    out
 }
 
 /// True for an NCName, the form of an identifier in XML.

@@ -24,6 +24,8 @@ pub(crate) use crate::foreign::{CHAPTER, FOREIGN_ID, NAME, TEXT};
 
 /// Namespace of ReqIF 1.0 to 1.2.
 pub(crate) const NAMESPACE: &str = "http://www.omg.org/spec/ReqIF/20110401/reqif.xsd";
+/// Namespace of the model of ReqIF 1.0, which some tools write in place of that of the schema.
+const NAMESPACE_2010: &str = "http://www.omg.org/spec/ReqIF/20101201";
 
 /// Name of this program in the head of a file.
 pub(crate) const TOOL: &str = "octant";

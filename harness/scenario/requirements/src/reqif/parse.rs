@@ -1,14 +1,18 @@
 //! Parsing of one ReqIF file: objects, relations and hierarchies, without their meaning.
 
-use super::NAMESPACE;
-use super::types::{Types, Wrong, child, identifier, reference, within};
+use super::identifier::decoded;
+use super::types::{Types, Wrong, child, reference, within};
+use super::{NAMESPACE, NAMESPACE_2010};
 use crate::error::Note;
 use crate::foreign::{Attribute, Object};
+use crate::ledger::{LeftOut, Lost, Repair, Whereabouts};
+use crate::lines::Lines;
 use crate::mapping::DeclaredType;
 use crate::xhtml;
 use octant_verdict::text::{control, normal};
 use octant_verdict::{RequirementsError, RequirementsProblem};
 use roxmltree::{Document, Node};
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -38,6 +42,10 @@ pub(super) struct ParsedFile {
     /// True for a file that this program wrote.
     pub(super) is_own: bool,
     pub(super) objects: Vec<Object>,
+    /// Objects that can't be read.
+    pub(super) lost: Vec<Lost>,
+    /// True for the namespace of 2010.
+    pub(super) is_of_2010: bool,
     pub(super) relations: Vec<Relation>,
     pub(super) specifications: Vec<Specification>,
     pub(super) types: Vec<DeclaredType>,
@@ -50,15 +58,32 @@ pub(super) fn parse(text: &str, file: &str, name: &str) -> Result<ParsedFile, Re
         RequirementsError::one(file, RequirementsProblem::new((line, column), "", message))
     };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = &*without_late_declaration(text);
     let document = Document::parse(text).map_err(|error| {
         let at = error.pos();
         fail(at.row as usize, at.col as usize, format!("not XML: {error}"))
     })?;
-    Parser::parse(&document, name).map_err(|(line, message)| fail(line, 1, message))
+    Parser::parse(&document, &Lines::of(text), name)
+        .map_err(|(line, message)| fail(line, 1, message))
+}
+
+/// Text without its XML declaration, if that comes after space, where XML doesn't allow one; places stay.
+fn without_late_declaration(text: &str) -> Cow<'_, str> {
+    let begin = text.len() - text.trim_start().len();
+    let rest = &text[begin..];
+    match rest.find("?>").filter(|_| begin > 0 && rest.starts_with("<?xml")) {
+        None => Cow::Borrowed(text),
+        Some(end) => {
+            let blank = |c: char| if c == '\n' { '\n' } else { ' ' };
+            let (declaration, rest) = rest.split_at(end + 2);
+            let head: String = declaration.chars().map(blank).collect();
+            Cow::Owned(format!("{}{head}{rest}", &text[..begin]))
+        }
+    }
 }
 
 struct Parser<'a> {
-    document: &'a Document<'a>,
+    lines: &'a Lines,
     types: Types,
     /// True for a file of StrictDoc, which writes strings with the escapes of Python.
     escaped: bool,
@@ -68,11 +93,16 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn parse(document: &'a Document<'a>, name: &str) -> Result<ParsedFile, Wrong> {
-        let line = |node: Node<'_, '_>| document.text_pos_at(node.range().start).row as usize;
+    fn parse(document: &Document<'_>, lines: &'a Lines, name: &str) -> Result<ParsedFile, Wrong> {
+        let line = |node: Node<'_, '_>| lines.number(node.range().start);
         let root = document.root_element();
         let tag = root.tag_name();
-        if tag.name() != "REQ-IF" || tag.namespace() != Some(NAMESPACE) {
+        if tag.name() == "RIF" {
+            let message = "found RIF, the format before ReqIF: export the document as ReqIF";
+            return Err((line(root), message.to_owned()));
+        }
+        let is_of_2010 = tag.namespace() == Some(NAMESPACE_2010);
+        if tag.name() != "REQ-IF" || !(is_of_2010 || tag.namespace() == Some(NAMESPACE)) {
             let found = format!(
                 "found {} of the namespace {:?}",
                 tag.name(),
@@ -86,15 +116,21 @@ impl<'a> Parser<'a> {
         let Some(content) = content else {
             return Err((line(root), "there is no CORE-CONTENT with a REQ-IF-CONTENT".to_owned()));
         };
-        let types = Types::read(content, &line)?;
+        let (types, undefined) = Types::read(content, &line);
         let escaped = tool.is_some_and(|tool| tool.trim().eq_ignore_ascii_case("strictdoc"));
         let is_own = tool.is_some_and(|tool| tool.trim() == super::TOOL);
-        let found = ParsedFile { name: name.to_owned(), is_own, ..ParsedFile::default() };
-        let mut parser = Parser { document, types, escaped, declared: HashMap::new(), found };
+        let found =
+            ParsedFile { name: name.to_owned(), is_own, is_of_2010, ..ParsedFile::default() };
+        let mut parser = Parser { lines, types, escaped, declared: HashMap::new(), found };
+        for (line, message) in undefined {
+            parser.note(line, message);
+        }
         parser.declare();
         for node in within(content, "SPEC-OBJECTS") {
-            let object = parser.object(node)?;
-            parser.found.objects.push(object);
+            match parser.object(node) {
+                Ok(object) => parser.found.objects.push(object),
+                Err(lost) => parser.found.lost.push(lost),
+            }
         }
         parser.relations(content);
         for node in within(content, "SPECIFICATIONS") {
@@ -106,7 +142,7 @@ impl<'a> Parser<'a> {
     }
 
     fn line(&self, node: Node<'_, '_>) -> usize {
-        self.document.text_pos_at(node.range().start).row as usize
+        self.lines.number(node.range().start)
     }
 
     fn note(&mut self, line: usize, message: impl Into<String>) {
@@ -153,18 +189,25 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn object(&mut self, node: Node<'_, '_>) -> Result<Object, Wrong> {
+    fn object(&mut self, node: Node<'_, '_>) -> Result<Object, Lost> {
         let line = self.line(node);
-        let id = identifier(node, &|n| self.line(n))?.to_owned();
+        let name = node.attribute("IDENTIFIER").filter(|id| !id.is_empty());
+        let at = Whereabouts::new(name.unwrap_or("without an IDENTIFIER"), &self.found.name, line);
+        let Some(id) = name else {
+            let message = "has no IDENTIFIER".to_owned();
+            return Err(Lost { why: LeftOut::NoId, at, message });
+        };
+        let id = id.to_owned();
         let of = reference(node, "TYPE").unwrap_or_default();
         let Some(object_type) = self.types.objects.get(of) else {
-            return Err((
-                line,
-                format!("the object {id:?} is of a type {of:?} that isn't in the file"),
-            ));
+            let message = format!("is of a type {of:?} that isn't in the file");
+            return Err(Lost { why: LeftOut::Undefined, at, message });
         };
         let kind = object_type.name.clone();
-        let mut attributes = self.values(node, &id)?;
+        let (mut attributes, repairs) = match self.values(node, &id) {
+            Ok(found) => found,
+            Err((why, message)) => return Err(Lost { why, at, message }),
+        };
         // Attributes are sorted in the order of the type, not of the object.
         let rank: HashMap<&str, usize> = self.types.objects[of]
             .attributes
@@ -177,61 +220,77 @@ impl<'a> Parser<'a> {
         Ok(Object {
             file: self.found.name.clone(),
             line,
-            kept_identifier: Some(id.clone()),
+            kept_identifier: Some(decoded(&id)),
             identifier: id,
             has_identifier: true,
             kind,
             long_name,
             attributes,
             declared: self.declared.get(of).cloned().unwrap_or_default(),
+            is_title_enough: false,
+            repairs,
         })
     }
 
-    /// Attributes of an object, or of a document.
-    fn values(&mut self, node: Node<'_, '_>, id: &str) -> Result<Vec<Attribute>, Wrong> {
-        let mut values: Vec<Attribute> = Vec::new();
+    /// Attributes of an object, or of a document, and the repairs of their texts.
+    fn values(
+        &mut self,
+        node: Node<'_, '_>,
+        id: &str,
+    ) -> Result<(Vec<Attribute>, Vec<Repair>), (LeftOut, String)> {
+        let (mut values, mut repairs): (Vec<Attribute>, Vec<Repair>) = Default::default();
         for value in within(node, "VALUES") {
             let line = self.line(value);
             let definition = reference(value, "DEFINITION").unwrap_or_default();
             let Some(known) = self.types.attributes.get(definition) else {
-                let found = format!("{id} has an attribute {definition:?}");
-                return Err((line, format!("{found} that no type in the file has")));
+                let message =
+                    format!("has an attribute {definition:?} that no type in the file has");
+                return Err((LeftOut::Undefined, message));
             };
             let (name, kind) = (known.name.clone(), known.kind.clone());
-            let (texts, formatted) = self.value(value, &name, id)?;
+            let (texts, formatted) = self.value(value, &name, &mut repairs)?;
+            let known = values.iter().find(|known| known.name == name);
             if texts.iter().all(String::is_empty) {
                 // A picture without a word of its own is no text.
                 if formatted.is_some_and(|xhtml| !xhtml::references(&xhtml).is_empty()) {
                     self.note(line, format!("{name} of {id} is a picture without a text"));
                 }
-            } else if values.iter().any(|known| known.name == name) {
-                self.note(line, format!("{name} of {id} is there again: the first is kept"));
+            } else if let Some(known) = known {
+                if known.values != texts {
+                    let kind = "with several values of one attribute, of which the first is kept";
+                    let (before, after) = (texts.join(", "), known.values.join(", "));
+                    let repair = Repair::of_text(kind, &format!("{name}: {before}"), &after);
+                    repairs.push(Repair { is_doubt: true, ..repair });
+                }
             } else {
                 values.push(Attribute { name, kind, values: texts, formatted, line });
             }
         }
-        Ok(values)
+        Ok((values, repairs))
     }
 
     /// Texts of an attribute's value, and its formatting.
     fn value(
-        &mut self,
+        &self,
         value: Node<'_, '_>,
         name: &str,
-        id: &str,
-    ) -> Result<(Vec<String>, Option<String>), Wrong> {
-        let line = self.line(value);
+        repairs: &mut Vec<Repair>,
+    ) -> Result<(Vec<String>, Option<String>), (LeftOut, String)> {
         let tag = value.tag_name().name();
         let mut formatted = None;
         let texts = match tag.strip_prefix("ATTRIBUTE-VALUE-") {
             Some("XHTML") => {
                 let plain = child(value, "THE-VALUE").map(xhtml::read).unwrap_or_default();
                 if !plain.foreign.is_empty() {
-                    let foreign = plain.foreign.join(", ");
-                    let message = format!(
-                        "{name} of {id}: elements that aren't XHTML become text: {foreign}"
-                    );
-                    self.note(line, message);
+                    repairs.push(Repair {
+                        kind: "with elements that aren't XHTML, of which the text is kept",
+                        detail: format!("{name}: {}", plain.foreign.join(", ")),
+                        is_doubt: false,
+                    });
+                }
+                if let Some(before) = &plain.undeleted {
+                    let kind = "with text that is marked as deleted, which is left out";
+                    repairs.push(Repair::of_text(kind, before, &plain.text));
                 }
                 formatted = plain.formatted;
                 vec![plain.text]
@@ -241,8 +300,10 @@ impl<'a> Parser<'a> {
                 for option in within(value, "VALUES") {
                     let of = option.text().unwrap_or_default().trim();
                     let Some(option) = self.types.options.get(of) else {
-                        let found = format!("{name} of {id} has the value {of:?}");
-                        return Err((line, format!("{found} that no enumeration in the file has")));
+                        let message = format!(
+                            "has the value {of:?} of {name}, which no enumeration in the file has"
+                        );
+                        return Err((LeftOut::Undefined, message));
                     };
                     options.push(option.clone());
                 }
@@ -255,10 +316,12 @@ impl<'a> Parser<'a> {
                     if string && self.escaped { super::unescape(text) } else { text.to_owned() };
                 vec![boolean(tag, normal(&text))]
             }
-            _ => return Err((line, format!("found {tag}, expected an ATTRIBUTE-VALUE"))),
+            _ => return Err((LeftOut::Damaged, format!("has {tag}, expected an ATTRIBUTE-VALUE"))),
         };
         match texts.iter().find_map(|text| control(text)) {
-            Some(c) => Err((line, format!("{name} of {id} has the control character {c:?}"))),
+            Some(c) => {
+                Err((LeftOut::Damaged, format!("has the control character {c:?} in {name}")))
+            }
             None => Ok((texts, formatted)),
         }
     }
@@ -283,7 +346,10 @@ impl<'a> Parser<'a> {
 
     fn specification(&mut self, node: Node<'_, '_>) -> Result<Specification, Wrong> {
         let title = node.attribute("LONG-NAME").map(normal).filter(|title| !title.is_empty());
-        let values = self.values(node, "the document")?;
+        let line = self.line(node);
+        let values = self.values(node, "the document");
+        let (values, _) =
+            values.map_err(|(_, message)| (line, format!("the specification {message}")))?;
         if values.iter().any(|value| value.formatted.is_some()) {
             let message = "the formatting of the attributes of the document is left out";
             self.note(self.line(node), message);

@@ -4,9 +4,10 @@ use super::identifier::identifier;
 use super::parse::{ParsedFile, Relation, parse};
 use crate::error::{Imported, Note, listed};
 use crate::foreign::{Assembly, Object, Place, Role};
+use crate::ledger::{LeftOut, Lost, Whereabouts};
 use crate::mapping::Mapping;
+use octant_verdict::RequirementsError;
 use octant_verdict::requirement::Parent;
-use octant_verdict::{RequirementsError, RequirementsProblem};
 use std::collections::{HashMap, HashSet};
 
 /// Reads a `.reqif` with the usual names of attributes.
@@ -20,12 +21,12 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
 /// Reads a `.reqif`.
 ///
 /// Several specifications in one file become one document, in which the title of each is a section of
-/// the first level. An object without an id or a text is left out, with a note. A requirement whose
+/// the first level. An object without an id or a text, with the id of another, or with parts that the file
+/// doesn't define, is left out: the account counts it, and a note names it. A requirement whose
 /// attributes make no complete check is read with an open verification, with a note.
 ///
 /// # Errors
-/// If the text isn't XML or not ReqIF, with the line; if a reference has no target in the file; if an
-/// id occurs twice; or if the mapping names what the file doesn't have.
+/// If the text isn't XML or not ReqIF, with the line, or if the mapping names what the file doesn't have.
 pub fn read_mapped(
     text: &str,
     file: &str,
@@ -51,47 +52,49 @@ pub(super) fn inside(archive: &str, name: &str) -> String {
 }
 
 /// All objects of the files, by their identifiers.
-struct Objects<'a> {
-    archive: &'a str,
+struct Objects {
     all: HashMap<String, Object>,
     order: Vec<String>,
+    /// Identifiers of objects that were left out.
+    lost: HashSet<String>,
 }
 
-impl<'a> Objects<'a> {
-    fn collect(
-        files: &mut [ParsedFile],
-        archive: &'a str,
-        notes: &mut Vec<Note>,
-    ) -> Result<Self, RequirementsError> {
-        let mut objects = Objects { archive, all: HashMap::new(), order: Vec::new() };
+impl Objects {
+    /// Collects the objects of all files; those that can't be used are left out.
+    fn collect(files: &mut [ParsedFile], assembly: &mut Assembly<'_>) -> Self {
+        let mut objects = Objects { all: HashMap::new(), order: Vec::new(), lost: HashSet::new() };
         for file in files {
+            for lost in file.lost.drain(..) {
+                assembly.lost(&lost);
+                objects.lost.insert(lost.at.name);
+            }
             for object in file.objects.drain(..) {
                 let id = object.identifier.clone();
-                match objects.all.get(&id) {
-                    None => {
-                        objects.order.push(id.clone());
-                        objects.all.insert(id, object);
-                    }
-                    Some(first) if first.file == object.file => {
-                        let found = format!("the object {id:?} is there a second time");
-                        let message = format!("{found}, the first is in line {}", first.line);
-                        return Err(objects.wrong(&object.file, object.line, message));
-                    }
-                    // Tools export what two documents share with both of them.
-                    Some(first) => {
-                        let message =
-                            format!("the object {id} is in {} too: that is kept", first.file);
-                        notes.push(Note::new(object.line, message).in_file(&object.file));
-                    }
-                }
+                let Some(first) = objects.all.get(&id) else {
+                    objects.order.push(id.clone());
+                    objects.all.insert(id, object);
+                    continue;
+                };
+                let at = object.at();
+                // Tools export what two documents share with both of them.
+                let is_copy = first.file != object.file && object.is_copy_of(first);
+                let (why, message) = if is_copy {
+                    (LeftOut::Copy, format!("is in {} too, which is kept", first.file))
+                } else if first.file == object.file {
+                    (
+                        LeftOut::Again,
+                        format!("is there a second time, the first is in line {}", first.line),
+                    )
+                } else {
+                    (
+                        LeftOut::Again,
+                        format!("is in {} with another content, which is kept", first.file),
+                    )
+                };
+                assembly.lost(&Lost { why, at, message });
             }
         }
-        Ok(objects)
-    }
-
-    fn wrong(&self, file: &str, line: usize, message: String) -> RequirementsError {
-        let problem = RequirementsProblem::new((line, 1), "", message);
-        RequirementsError::one(&inside(self.archive, file), problem)
+        objects
     }
 }
 
@@ -104,7 +107,7 @@ enum Above {
 }
 
 struct Combiner<'a> {
-    objects: Objects<'a>,
+    objects: Objects,
     mapping: &'a Mapping,
     assembly: Assembly<'a>,
     /// Relations of each object, with the name of their file.
@@ -123,10 +126,12 @@ fn combine(
     let mapping = if is_own { &own } else { mapping };
     let types: Vec<_> = files.iter_mut().flat_map(|file| file.types.drain(..)).collect();
     mapping.check(&types)?;
-    let mut notes: Vec<Note> = files.iter_mut().flat_map(|file| file.notes.drain(..)).collect();
-    let objects = Objects::collect(&mut files, archive, &mut notes)?;
-    let mut assembly = Assembly::new(mapping);
-    assembly.notes = notes;
+    let mut assembly = Assembly::new(mapping, archive);
+    assembly.notes = files.iter_mut().flat_map(|file| file.notes.drain(..)).collect();
+    if files.iter().any(|file| file.is_of_2010) {
+        assembly.ledger.fact("the namespace of 2010 is read as that of ReqIF 1.2");
+    }
+    let objects = Objects::collect(&mut files, &mut assembly);
     let mut combiner =
         Combiner { objects, mapping, assembly, relations: HashMap::new(), ids: HashMap::new() };
     for file in &mut files {
@@ -136,8 +141,8 @@ fn combine(
         }
     }
     combiner.title(&mut files);
-    combiner.place(&files)?;
-    combiner.unplaced()?;
+    combiner.place(&files);
+    combiner.unplaced();
     combiner.relate();
     Ok(combiner.assembly.finish())
 }
@@ -165,7 +170,7 @@ impl Combiner<'_> {
     }
 
     /// Adds the objects of all hierarchies in their order.
-    fn place(&mut self, files: &[ParsedFile]) -> Result<(), RequirementsError> {
+    fn place(&mut self, files: &[ParsedFile]) {
         let several = files.iter().map(|file| file.specifications.len()).sum::<usize>() > 1;
         let mut placed: HashSet<&str> = HashSet::new();
         for file in files {
@@ -182,52 +187,57 @@ impl Combiner<'_> {
                         self.assembly.notes.push(note);
                         continue;
                     }
-                    let Some(object) = self.objects.all.remove(id) else {
-                        let found = format!("the hierarchy has an object {id:?}");
-                        let message = format!("{found} that isn't in the file");
-                        return Err(self.objects.wrong(&file.name, *line, message));
+                    let node = match self.objects.all.remove(id) {
+                        Some(object) => self.object(object, &above),
+                        None => {
+                            self.absent(&Whereabouts::new(id, &file.name, *line));
+                            Above::Nothing
+                        }
                     };
-                    let node = self.object(object, &above)?;
                     above.push((*depth, node));
                 }
             }
         }
-        Ok(())
+    }
+
+    /// Notes an object that a hierarchy has and the file doesn't.
+    fn absent(&mut self, at: &Whereabouts) {
+        if self.objects.lost.contains(&at.name) {
+            return;
+        }
+        self.assembly.ledger.missing(at);
+        let message = format!("the hierarchy has an object {:?} that isn't in the file", at.name);
+        self.assembly.notes.push(Note::new(at.line, message).in_file(&at.file));
     }
 
     /// Adds the objects that no hierarchy has.
-    fn unplaced(&mut self) -> Result<(), RequirementsError> {
+    fn unplaced(&mut self) {
         let mut names = Vec::new();
         for id in std::mem::take(&mut self.objects.order) {
             let Some(object) = self.objects.all.remove(&id) else { continue };
             names.push(id);
-            self.object(object, &[])?;
+            self.object(object, &[]);
         }
         if !names.is_empty() {
             let message =
                 format!("in no specification, and so at the end: the objects {}", listed(&names));
             self.assembly.notes.push(Note::new(0, message));
         }
-        Ok(())
     }
 
-    fn object(
-        &mut self,
-        object: Object,
-        above: &[(usize, Above)],
-    ) -> Result<Above, RequirementsError> {
+    fn object(&mut self, object: Object, above: &[(usize, Above)]) -> Above {
         match object.role(self.mapping) {
             Role::Heading(title, false) => {
                 self.assembly.heading(&object);
-                return Ok(Above::Section(title));
+                return Above::Section(title);
             }
             Role::Heading(title, true) => {
                 self.assembly.informative(&object);
-                return Ok(Above::Section(title));
+                return Above::Section(title);
             }
             Role::Informative => {
                 self.assembly.informative(&object);
-                return Ok(Above::Nothing);
+                return Above::Nothing;
             }
             Role::Requirement => {}
         }
@@ -241,20 +251,13 @@ impl Combiner<'_> {
         });
         let place = Place { section: section.collect(), under };
         let key = object.identifier.clone();
-        let Some(id) = self.add(object, place)? else { return Ok(Above::Nothing) };
+        let Some(id) = self.assembly.add(object, place, Vec::new()) else { return Above::Nothing };
         if let Some(last) = self.assembly.found.requirements.last_mut() {
             // An identifier that this program made from the id adds nothing.
             last.identifier = last.identifier.take().filter(|of| *of != identifier(&id));
         }
         self.ids.insert(key, id.clone());
-        Ok(Above::Requirement(id))
-    }
-
-    fn add(&mut self, object: Object, place: Place) -> Result<Option<String>, RequirementsError> {
-        let (archive, file) = (self.objects.archive, object.file.clone());
-        self.assembly
-            .add(object, place, Vec::new())
-            .map_err(|error| RequirementsError { file: inside(archive, &file), ..error })
+        Above::Requirement(id)
     }
 
     /// Sets the parents of all requirements.

@@ -51,11 +51,12 @@ pub(super) struct Types {
 pub(super) type Wrong = (usize, String);
 
 impl Types {
+    /// Reads the types of a file, and lists the definitions that can't be used.
     pub(super) fn read(
         content: Node<'_, '_>,
         line: &dyn Fn(Node<'_, '_>) -> usize,
-    ) -> Result<Self, Wrong> {
-        let mut types = Self::default();
+    ) -> (Self, Vec<Wrong>) {
+        let (mut types, mut undefined) = (Self::default(), Vec::new());
         let mut enumerations: HashMap<&str, Vec<String>> = HashMap::new();
         for datatype in within(content, "DATATYPES") {
             if datatype.tag_name().name() != "DATATYPE-DEFINITION-ENUMERATION" {
@@ -63,7 +64,13 @@ impl Types {
             }
             let mut options = Vec::new();
             for value in within(datatype, "SPECIFIED-VALUES") {
-                let id = identifier(value, line)?;
+                let id = match identifier(value, line) {
+                    Ok(id) => id,
+                    Err(wrong) => {
+                        undefined.push(wrong);
+                        continue;
+                    }
+                };
                 let key = || within(value, "PROPERTIES").next().and_then(|p| p.attribute("KEY"));
                 let name =
                     value.attribute("LONG-NAME").filter(|n| !n.trim().is_empty()).or_else(key);
@@ -71,25 +78,34 @@ impl Types {
                 types.options.insert(id.to_owned(), name.clone());
                 options.push(name);
             }
-            enumerations.insert(identifier(datatype, line)?, options);
+            match identifier(datatype, line) {
+                Ok(id) => _ = enumerations.insert(id, options),
+                Err(wrong) => undefined.push(wrong),
+            }
         }
         for node in within(content, "SPEC-TYPES") {
-            let id = identifier(node, line)?;
+            let id = match identifier(node, line) {
+                Ok(id) => id,
+                Err(wrong) => {
+                    undefined.push(wrong);
+                    continue;
+                }
+            };
             let name = node.attribute("LONG-NAME").unwrap_or(id).to_owned();
             match node.tag_name().name() {
                 "SPEC-RELATION-TYPE" => _ = types.relations.insert(id.to_owned(), name),
                 "SPEC-OBJECT-TYPE" => {
-                    let attributes = types.attributes_of(node, &enumerations, line)?;
+                    let attributes = types.attributes_of(node, &enumerations, line, &mut undefined);
                     types.objects.insert(id.to_owned(), ObjectType { name, attributes });
                 }
                 "SPECIFICATION-TYPE" => {
-                    types.attributes_of(node, &enumerations, line)?;
+                    types.attributes_of(node, &enumerations, line, &mut undefined);
                 }
                 // Attributes of relations are not supported.
                 _ => {}
             }
         }
-        Ok(types)
+        (types, undefined)
     }
 
     fn attributes_of(
@@ -97,10 +113,17 @@ impl Types {
         node: Node<'_, '_>,
         enumerations: &HashMap<&str, Vec<String>>,
         line: &dyn Fn(Node<'_, '_>) -> usize,
-    ) -> Result<Vec<String>, Wrong> {
+        undefined: &mut Vec<Wrong>,
+    ) -> Vec<String> {
         let mut attributes = Vec::new();
         for attribute in within(node, "SPEC-ATTRIBUTES") {
-            let id = identifier(attribute, line)?;
+            let id = match identifier(attribute, line) {
+                Ok(id) => id,
+                Err(wrong) => {
+                    undefined.push(wrong);
+                    continue;
+                }
+            };
             let name = attribute.attribute("LONG-NAME").unwrap_or(id).trim().to_owned();
             let tag = attribute.tag_name().name();
             let kind = match tag.strip_prefix("ATTRIBUTE-DEFINITION-") {
@@ -114,7 +137,9 @@ impl Types {
                     let Some(options) = enumerations.get(datatype) else {
                         let found =
                             format!("the attribute {name:?} is of an enumeration {datatype:?}");
-                        return Err((line(attribute), format!("{found} that isn't in the file")));
+                        undefined
+                            .push((line(attribute), format!("{found} that isn't in the file")));
+                        continue;
                     };
                     match attribute.attribute("MULTI-VALUED") {
                         Some("true" | "1") => AttributeKind::Choices(options.clone()),
@@ -122,16 +147,15 @@ impl Types {
                     }
                 }
                 _ => {
-                    return Err((
-                        line(attribute),
-                        format!("found {tag}, expected an ATTRIBUTE-DEFINITION"),
-                    ));
+                    let message = format!("found {tag}, expected an ATTRIBUTE-DEFINITION");
+                    undefined.push((line(attribute), message));
+                    continue;
                 }
             };
             self.attributes.insert(id.to_owned(), Definition { name, kind });
             attributes.push(id.to_owned());
         }
-        Ok(attributes)
+        attributes
     }
 }
 

@@ -1,7 +1,7 @@
 //! Writing of ReqIF files.
 
 use super::columns::{Column, columns};
-use super::identifier::{identifier, legal, object_id};
+use super::identifier::{identifier, object_id};
 use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, TOOL};
 use crate::error::ExportError;
 use crate::hierarchy::{Step, steps};
@@ -28,9 +28,6 @@ pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportEr
     for requirement in &requirements.requirements {
         let wrong = |message| ExportError { format: "ReqIF", id: requirement.id.clone(), message };
         let id = object_id(requirement);
-        if !legal(&id) {
-            return Err(wrong(format!("its identifier {id:?} is none that XML takes")));
-        }
         for attribute in &requirement.attributes {
             let kind = requirements.kind(&attribute.name);
             if let Some(expected) = misfit(&kind, &attribute.values) {

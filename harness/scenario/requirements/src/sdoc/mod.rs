@@ -13,6 +13,7 @@ mod read;
 mod write;
 
 pub use read::read;
+pub(crate) use write::metadata_name;
 pub use write::write;
 
 /// Fields of a document's head, in the order of StrictDoc's grammar.

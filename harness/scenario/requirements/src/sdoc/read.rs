@@ -1,9 +1,12 @@
 //! Reading of StrictDoc's documents.
 
-use super::grammar::{Field, kind};
+mod head;
+
+use super::REQUIREMENT;
+use super::grammar::Field;
 use super::markup;
-use super::{HEAD, OPTIONS, REQUIREMENT};
 use crate::error::{Imported, Note};
+use crate::ledger::{Ledger, LeftOut, Lost, Repair, Whereabouts};
 use octant_verdict::fields as field;
 use octant_verdict::requirement::{
     AttributeKind, ForeignAttribute, Parent, Requirement, Requirements, Verification,
@@ -14,11 +17,12 @@ use std::collections::HashMap;
 
 /// Reads an `.sdoc`.
 ///
-/// A node whose fields make no complete check is read with an open verification, and a note says so.
+/// A node whose fields make no complete check is read with an open verification, and a note says so. A node
+/// without a UID or a statement, with the UID of another, or that can't be read, is left out: the account counts it,
+/// and a note names it. A node without a UID is called by its MID.
 ///
 /// # Errors
-/// If the text isn't a document of StrictDoc, with the line; if a requirement has no UID or no
-/// statement; or if a UID occurs twice.
+/// If the text isn't a document of StrictDoc, with the line.
 pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut parser = Parser {
@@ -26,6 +30,7 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
         at: 0,
         found: Requirements::default(),
         notes: Vec::new(),
+        ledger: Ledger::new(file),
         fields: HashMap::new(),
         ids: HashMap::new(),
         open: Vec::new(),
@@ -35,6 +40,7 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
             requirements: parser.found,
             notes: parser.notes,
             attachments: Vec::new(),
+            account: parser.ledger.finish(),
         }),
         Err((line, message)) => {
             Err(RequirementsError::one(file, RequirementsProblem::new((line, 1), "", message)))
@@ -67,6 +73,7 @@ struct Parser<'a> {
     at: usize,
     found: Requirements,
     notes: Vec<Note>,
+    ledger: Ledger,
     /// Fields of the grammar, by type of node and name.
     fields: HashMap<(String, String), Field>,
     /// Lines of the UIDs.
@@ -127,119 +134,6 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Reads the lines after `[DOCUMENT]`, up to the first empty one.
-    fn head(&mut self) -> Result<(), Wrong> {
-        let mut title = None;
-        let mut block = "";
-        while let Some(line) = self.peek().filter(|line| !line.is_empty()) {
-            let indented = line.starts_with(' ') || line.starts_with('-');
-            if !indented && let Some(name) = line.strip_suffix(':') {
-                block = name;
-                if !["OPTIONS", "METADATA", "VIEWS"].contains(&block) {
-                    return self.wrong(format!("{}, expected a field with a value", self.found()));
-                }
-                if block == "VIEWS" {
-                    self.note(self.line(), "views are left out");
-                }
-            } else if block == "VIEWS" && indented {
-                // A note was already made above.
-            } else if let Some((key, value)) = line.trim_start().split_once(": ") {
-                let value = value.trim().to_owned();
-                match (indented, block) {
-                    (false, _) if key == "TITLE" => title = Some(value),
-                    (false, _) if HEAD.contains(&key) => {
-                        self.found.document.push((key.to_owned(), value));
-                    }
-                    (true, "METADATA") => {
-                        self.found.document.push((format!("METADATA.{key}"), value));
-                    }
-                    (true, "OPTIONS") if OPTIONS.contains(&key) => {
-                        self.found.document.push((format!("OPTIONS.{key}"), value));
-                    }
-                    _ => {
-                        let known: Vec<&str> = HEAD.into_iter().chain(OPTIONS).collect();
-                        let like =
-                            octant_base::names::suggestion(key, known.iter().copied(), "known");
-                        return self
-                            .wrong(format!("unknown field {key:?} of the document, {like}"));
-                    }
-                }
-            } else {
-                return self.wrong(format!("{}, expected a field NAME: value", self.found()));
-            }
-            self.at += 1;
-        }
-        let Some(title) = title.filter(|title| !title.is_empty()) else {
-            return self.wrong("the document has no TITLE");
-        };
-        self.found.title = title;
-        let document = &mut self.found.document;
-        if !document.iter().any(|(key, _)| key == markup::OPTION) {
-            // Said, so that a document that is written from this one means the same.
-            let at = document.iter().position(|(key, _)| key.starts_with("METADATA."));
-            let option = (markup::OPTION.to_owned(), markup::DEFAULT.to_owned());
-            document.insert(at.unwrap_or(document.len()), option);
-        }
-        Ok(())
-    }
-
-    fn grammar(&mut self) -> Result<(), Wrong> {
-        let mut tag = String::new();
-        let mut field: Option<Field> = None;
-        let mut relations = false;
-        while let Some(line) = self.peek().filter(|line| !line.is_empty()) {
-            let trimmed = line.trim_start();
-            if line.starts_with("IMPORT_FROM_FILE: ") {
-                let message = format!("the grammar of another file is not read: {line}");
-                self.note(self.line(), message);
-            } else if let Some(name) = line.strip_prefix("- TAG: ") {
-                self.declare(&tag, field.take());
-                tag = name.trim().to_owned();
-                relations = false;
-            } else if line == "  RELATIONS:" {
-                self.declare(&tag, field.take());
-                relations = true;
-            } else if let Some(title) = line.strip_prefix("  - TITLE: ") {
-                self.declare(&tag, field.take());
-                let title = title.trim().to_owned();
-                field = Some(Field { title, human: None, kind: AttributeKind::Text });
-            } else if let (Some(text), Some(field), false) =
-                (trimmed.strip_prefix("HUMAN_TITLE: "), &mut field, relations)
-            {
-                field.human = Some(text.trim().to_owned());
-            } else if let (Some(text), Some(field), false) =
-                (trimmed.strip_prefix("TYPE: "), &mut field, relations)
-            {
-                let Some(kind) = kind(text.trim()) else {
-                    return self.wrong(format!(
-                        "found the type {text:?}, expected String, SingleChoice(…), MultipleChoice(…) or Tag"
-                    ));
-                };
-                field.kind = kind;
-            } else if !(line == "ELEMENTS:"
-                || line.starts_with(' ') && (trimmed.ends_with(':') || trimmed.contains(": ")))
-            {
-                return self.wrong(format!("{}, expected a line of the grammar", self.found()));
-            }
-            self.at += 1;
-        }
-        self.declare(&tag, field);
-        Ok(())
-    }
-
-    fn declare(&mut self, tag: &str, field: Option<Field>) {
-        let Some(field) = field else { return };
-        let ours = field::ALL.contains(&field.title.as_str())
-            || field::OF_FORMATS.contains(&field.title.as_str());
-        if !ours && let Some(definition) = field.definition() {
-            let known = &mut self.found.definitions;
-            if !known.iter().any(|d| d.name == definition.name) {
-                known.push(definition);
-            }
-        }
-        self.fields.insert((tag.to_owned(), field.title.clone()), field);
-    }
-
     /// Reads a node, or the end of one.
     fn node(&mut self) -> Result<(), Wrong> {
         let (line, head) = (self.line(), self.peek().unwrap_or_default());
@@ -264,30 +158,62 @@ impl<'a> Parser<'a> {
             (Some(kind), _) => (true, kind),
             // `SECTION` in single brackets is the older form of a section.
             (None, Some(kind)) => (kind == "SECTION", kind),
-            (None, None) => return self.wrong(format!("{}, expected a node [NAME]", self.found())),
+            (None, None) => {
+                let message = format!("is no node: {}, expected [NAME]", self.found());
+                self.lost(LeftOut::Damaged, "between the nodes".to_owned(), line, message);
+                self.at += 1;
+                self.skip();
+                return Ok(());
+            }
         };
         self.at += 1;
         if kind == "DOCUMENT_FROM_FILE" {
-            let message =
-                format!("another document is not read: {}", self.peek().unwrap_or_default());
-            self.note(line, message);
+            let file = self.peek().unwrap_or_default().trim_start_matches("FILE: ").to_owned();
+            let message = "is another document: read it by itself".to_owned();
+            self.lost(LeftOut::Document, file, line, message);
             self.at += 1;
             return Ok(());
         }
-        let (fields, parents) = self.fields()?;
-        let title = fields.iter().find(|f| f.name == "TITLE").map(|f| f.value.clone());
-        match kind.as_str() {
-            "TEXT" => self.note(line, "free text is left out"),
-            "SECTION" => {}
-            _ => self.requirement(line, &kind, fields, parents)?,
+        let (mut section, mut requirement) = (None, None);
+        match (self.fields(), kind.as_str()) {
+            (Err((at, message)), _) => {
+                let message = format!("can't be read in line {at}: {message}");
+                self.lost(LeftOut::Damaged, kind.clone(), line, message);
+                self.skip();
+            }
+            (Ok(_), "TEXT") => {
+                self.ledger.left_out(LeftOut::Information, &Whereabouts::new(&*kind, "", line));
+                self.note(line, "free text is left out");
+            }
+            (Ok((fields, _)), "SECTION") => {
+                self.ledger.kept(&Whereabouts::new(&*kind, "", line), &[]);
+                section = fields.into_iter().find(|f| f.name == "TITLE").map(|f| f.value);
+            }
+            (Ok((fields, parents)), _) => {
+                requirement = self.requirement(line, &kind, fields, parents);
+            }
         }
         if composite {
-            let section = if kind == "SECTION" { title } else { None };
-            let last = self.found.requirements.last().map(|last| last.id.clone());
-            let requirement = last.filter(|_| kind != "SECTION" && kind != "TEXT");
             self.open.push(Open { kind, line, section, requirement });
         }
         Ok(())
+    }
+
+    /// Leaves out an object.
+    fn lost(&mut self, why: LeftOut, name: String, line: usize, message: String) {
+        let lost = Lost { why, at: Whereabouts::new(name, "", line), message };
+        let note = self.ledger.lost(&lost);
+        self.notes.push(note);
+    }
+
+    /// Goes to the next node after an empty line.
+    fn skip(&mut self) {
+        while let Some(line) = self.peek() {
+            if line.starts_with('[') && self.at > 0 && self.lines[self.at - 1].is_empty() {
+                return;
+            }
+            self.at += 1;
+        }
     }
 
     /// Reads fields and parents of a node, up to the empty line after it.
@@ -312,24 +238,35 @@ impl<'a> Parser<'a> {
             if let Some(c) = control(&value) {
                 return Err((line, format!("{name} has the control character {c:?}")));
             }
-            if value.is_empty() {
-                return Err((line, format!("{name} is empty")));
+            if !value.is_empty() {
+                fields.push(Written { name: name.to_owned(), value, line });
             }
-            fields.push(Written { name: name.to_owned(), value, line });
         }
         Ok((fields, parents))
     }
 
     /// Reads the lines of a value up to `<<<`.
     fn block(&mut self, line: usize, name: &str) -> Result<String, Wrong> {
-        let mut lines = Vec::new();
+        let mut lines: Vec<&str> = Vec::new();
+        let mut has_node = false;
         while let Some(text) = self.peek() {
             self.at += 1;
             if text == "<<<" {
                 return Ok(normal(&lines.join("\n")));
             }
+            // A value that begins in another node: the end of this one is missing, and it would swallow that node.
+            let field = text.strip_suffix(": >>>");
+            if has_node
+                && field
+                    .is_some_and(|name| name.chars().all(|c| c.is_ascii_uppercase() || c == '_'))
+            {
+                break;
+            }
+            has_node |= text.starts_with('[') && text.ends_with(']') && lines.last() == Some(&"");
             lines.push(text);
         }
+        // The nodes that follow are read.
+        self.at = line;
         Err((line, format!("{name} begins with >>> and isn't closed by a line <<<")))
     }
 
@@ -369,13 +306,14 @@ impl<'a> Parser<'a> {
         Ok(parents)
     }
 
+    /// Adds the requirement that a node is, or leaves it out; returns its id.
     fn requirement(
         &mut self,
         line: usize,
         kind: &str,
         fields: Vec<Written>,
         parents: Vec<Parent>,
-    ) -> Result<(), Wrong> {
+    ) -> Option<String> {
         let mut fields = fields;
         let mut take = |name: &str| {
             let at = fields.iter().position(|f| f.name == name)?;
@@ -384,16 +322,30 @@ impl<'a> Parser<'a> {
         let (mid, uid, title) = (take("MID"), take("UID"), take("TITLE"));
         let (statement, clause, rationale) =
             (take("STATEMENT"), take(field::CLAUSE), take(field::RATIONALE));
-        let Some(uid) = uid else {
-            return Err((line, format!("this {kind} has no UID, by which it could be named")));
+        let mut repairs = Vec::new();
+        if let (None, Some(mid)) = (&uid, &mid) {
+            let detail = format!("{kind}: {}", mid.value);
+            let is_doubt = false;
+            repairs.push(Repair { kind: "without a UID, called by the MID", detail, is_doubt });
+        }
+        let Some(uid) = uid.or_else(|| mid.as_ref().map(Written::copy)) else {
+            let message = "has no UID and no MID, by which it could be named".to_owned();
+            self.lost(LeftOut::NoId, kind.to_owned(), line, message);
+            return None;
         };
-        if let Some(first) = self.ids.insert(uid.value.clone(), uid.line) {
-            let found = format!("the UID {:?} is there a second time", uid.value);
-            return Err((uid.line, format!("{found}, the first is in line {first}")));
+        if let Some(first) = self.ids.get(&uid.value) {
+            let message = format!("has the UID of another, that of line {first}");
+            self.lost(LeftOut::Again, uid.value, uid.line, message);
+            return None;
         }
         let Some(text) = statement.or_else(|| title.as_ref().map(Written::copy)) else {
-            return Err((line, format!("{} has neither STATEMENT nor TITLE", uid.value)));
+            let message = "has neither STATEMENT nor TITLE".to_owned();
+            self.lost(LeftOut::NoText, uid.value, line, message);
+            return None;
         };
+        let notes = self.ledger.kept(&Whereabouts::new(&*uid.value, "", line), &repairs);
+        self.notes.extend(notes);
+        self.ids.insert(uid.value.clone(), uid.line);
         if markup::is_rst(&self.found.document) {
             for written in fields.iter_mut().filter(|written| markup::made(&written.name)) {
                 written.value = markup::plain(&written.value);
@@ -420,7 +372,12 @@ impl<'a> Parser<'a> {
         let mut attributes: Vec<ForeignAttribute> = Vec::new();
         for written in fields {
             let known = self.fields.get(&(kind.to_owned(), written.name.clone()));
-            let name = known.map_or(written.name.as_str(), Field::name).to_owned();
+            let mut name = known.map_or(written.name.as_str(), Field::name).to_owned();
+            let is_said = !matches!(verification, Verification::Open | Verification::Test(_));
+            if name == field::VERIFICATION && is_said {
+                // Several methods, of which the requirement keeps the one that decides.
+                name += " (other)";
+            }
             let values = match known.map(|field| &field.kind) {
                 Some(AttributeKind::Choices(_)) => {
                     written.value.split(", ").map(str::to_owned).collect()
@@ -445,7 +402,7 @@ impl<'a> Parser<'a> {
             attributes,
             ..Requirement::new(&uid.value, &text.value, verification)
         });
-        Ok(())
+        Some(uid.value)
     }
 }
 

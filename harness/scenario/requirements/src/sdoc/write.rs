@@ -18,7 +18,7 @@ use std::fmt::Write as _;
 pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
     let mut out = String::from("[DOCUMENT]\n");
     let whole = |message: String| ExportError { format: "sdoc", id: "(all)".to_owned(), message };
-    head(&mut out, requirements).map_err(whole)?;
+    head(&mut out, requirements);
     for definition in &requirements.definitions {
         for option in definition.kind.options().unwrap_or_default() {
             if option.contains([',', '(', ')', '"', '\n']) {
@@ -55,7 +55,7 @@ pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
     Ok(out)
 }
 
-fn head(out: &mut String, requirements: &Requirements) -> Result<(), String> {
+fn head(out: &mut String, requirements: &Requirements) {
     let entry = |key: &str| {
         requirements
             .document
@@ -96,17 +96,19 @@ fn head(out: &mut String, requirements: &Requirements) -> Result<(), String> {
         out.push_str("METADATA:\n");
     }
     for (key, value) in metadata {
-        let key = key.strip_prefix("METADATA.").unwrap_or(key);
-        let word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        let first = |c: char| c.is_ascii_alphabetic() || c == '_';
-        if !key.starts_with(first) || !key.chars().all(word) {
-            return Err(format!(
-                "{key:?} of the document is none of StrictDoc's names: a letter or _, then also digits and -"
-            ));
-        }
-        line(out, "  ", key, &value.replace('\n', " "));
+        line(out, "  ", &metadata_name(key), &value.replace('\n', " "));
     }
-    Ok(())
+}
+
+/// Name of a field of the head as metadata: a letter or `_`, then also digits and `-`.
+pub(crate) fn metadata_name(key: &str) -> String {
+    let key = key.strip_prefix("METADATA.").unwrap_or(key);
+    let word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    let mut name: String = key.chars().map(|c| if word(c) { c } else { '_' }).collect();
+    if !name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+        name.insert(0, '_');
+    }
+    name
 }
 
 /// Attributes with their fields.

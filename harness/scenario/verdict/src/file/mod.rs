@@ -14,6 +14,7 @@
 //! clause = "SSS-INS 3.2.1"
 //! ```
 
+mod accounts;
 mod read;
 mod write;
 

@@ -13,7 +13,7 @@ use octant_base::names::suggestion;
 use octant_toml_tree::Value;
 use std::collections::HashMap;
 
-const ROOT: [&str; 5] = ["schema", "title", "document", "attributes", "requirements"];
+const ROOT: [&str; 6] = ["schema", "title", "document", "attributes", "requirements", "accounts"];
 const DEFINITION: [&str; 4] = ["name", "type", "options", "field"];
 const REQUIREMENT: [&str; 19] = [
     "id",
@@ -110,7 +110,8 @@ fn document(root: &Reader<'_>, checker: &dyn Checker) -> Requirements {
         requirements.extend(read);
     }
     let title = root.line_of("title").unwrap_or_else(|| "Requirements".to_owned());
-    Requirements { title, document, definitions, requirements }
+    let accounts = super::accounts::read(root);
+    Requirements { title, document, definitions, requirements, accounts }
 }
 
 fn id_of(requirement: Option<&Requirement>) -> Option<&String> {

@@ -27,6 +27,7 @@ pub fn write(requirements: &Requirements) -> String {
     for requirement in &requirements.requirements {
         one(&mut out, requirement);
     }
+    super::accounts::write(&mut out, &requirements.accounts);
     out
 }
 
@@ -90,7 +91,7 @@ fn one(out: &mut String, requirement: &Requirement) {
     }
 }
 
-fn entry(out: &mut String, key: &str, value: &str) {
+pub(super) fn entry(out: &mut String, key: &str, value: &str) {
     _ = writeln!(out, "{} = {}", key_of(key), quoted(value));
 }
 
@@ -100,7 +101,7 @@ fn optional(out: &mut String, key: &str, value: &Option<String>) {
     }
 }
 
-fn array(out: &mut String, key: &str, values: &[String]) {
+pub(super) fn array(out: &mut String, key: &str, values: &[String]) {
     let values: Vec<String> = values.iter().map(|value| quoted(value)).collect();
     _ = writeln!(out, "{} = [{}]", key_of(key), values.join(", "));
 }
@@ -111,7 +112,7 @@ fn escape(text: &str) -> String {
 
 /// Quotes a text: JSON escapes everything that a basic string of TOML must escape, except DEL. Several
 /// lines stay several lines.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     if !text.contains('\n') {
         return escape(text);
     }

@@ -1,6 +1,9 @@
 //! Texts as XHTML: paragraphs at empty lines, breaks at other line ends; and formatting, which is kept
 //! beside the plain text.
 
+mod plain;
+
+use plain::{is_deleted, plain};
 use roxmltree::{Document, Node};
 use std::fmt::Write as _;
 
@@ -84,36 +87,24 @@ pub(crate) struct Plain {
     pub(crate) formatted: Option<String>,
     /// Elements of other namespaces, whose text alone is kept.
     pub(crate) foreign: Vec<String>,
+    /// Text with that which its author marked as deleted, if there is any.
+    pub(crate) undeleted: Option<String>,
 }
 
 /// Plain text of the children of `THE-VALUE`, and their formatting.
 pub(crate) fn read(value: Node<'_, '_>) -> Plain {
-    let mut plain = Plain::default();
-    // Not recursive, because a file may be nested to any depth.
-    for edge in value.descendants() {
-        if edge.is_element() && edge != value {
-            let name = edge.tag_name().name();
-            match name {
-                "br" => plain.text.push('\n'),
-                "div" | "p" | "li" | "ul" | "ol" | "h1" | "h2" | "h3" | "h4" | "h5" | "h6"
-                | "tr" | "table" | "pre" | "blockquote" | "td" => block(&mut plain.text),
-                _ => {}
-            }
-            if !is_ours(edge) && !plain.foreign.iter().any(|known| known == name) {
-                plain.foreign.push(name.to_owned());
-            }
-        } else if edge.is_text() {
-            // Text after the end of a block begins a new one.
-            if edge.prev_sibling().is_some_and(|before| is_block(before)) {
-                block(&mut plain.text);
-            }
-            flow(&mut plain.text, edge.text().unwrap_or_default());
+    let mut read = Plain { text: plain(value, false), ..Plain::default() };
+    for node in value.descendants().filter(|node| node.is_element() && *node != value) {
+        let name = node.tag_name().name();
+        if !is_ours(node) && !read.foreign.iter().any(|known| known == name) {
+            read.foreign.push(name.to_owned());
+        }
+        if read.undeleted.is_none() && is_deleted(node) {
+            read.undeleted = Some(plain(value, true)).filter(|before| *before != read.text);
         }
     }
-    let lines: Vec<&str> = plain.text.split('\n').map(str::trim).collect();
-    plain.text = lines.join("\n").trim().to_owned();
-    plain.formatted = (!is_unformatted(value)).then(|| serialized(value, "").trim().to_owned());
-    plain
+    read.formatted = (!is_unformatted(value)).then(|| serialized(value, "").trim().to_owned());
+    read
 }
 
 fn is_ours(node: Node<'_, '_>) -> bool {
@@ -197,42 +188,4 @@ fn escape(out: &mut String, text: &str, attribute: bool) {
             c => out.push(c),
         }
     }
-}
-
-fn is_block(node: Node<'_, '_>) -> bool {
-    matches!(node.tag_name().name(), "div" | "p" | "li" | "table" | "pre" | "blockquote")
-}
-
-/// Begins a block on a line of its own, after an empty one if there is text before it.
-fn block(text: &mut String) {
-    while text.ends_with([' ', '\t']) {
-        text.pop();
-    }
-    if !text.is_empty() {
-        while !text.ends_with("\n\n") {
-            text.push('\n');
-        }
-    }
-}
-
-/// Characters that are space in XML.
-const SPACE: [char; 4] = [' ', '\t', '\n', '\r'];
-
-/// Adds running text. Space with a line break in it is indentation and becomes one space; other space
-/// stays.
-fn flow(text: &mut String, more: &str) {
-    let mut rest = more;
-    while let Some(at) = rest.find(SPACE) {
-        text.push_str(&rest[..at]);
-        rest = &rest[at..];
-        let end = rest.find(|c| !SPACE.contains(&c)).unwrap_or(rest.len());
-        let space = &rest[..end];
-        if !space.contains('\n') {
-            text.push_str(space);
-        } else if !text.ends_with('\n') && !text.is_empty() {
-            text.push(' ');
-        }
-        rest = &rest[end..];
-    }
-    text.push_str(rest);
 }
