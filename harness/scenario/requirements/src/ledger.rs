@@ -29,6 +29,7 @@ pub(crate) enum LeftOut {
     /// Information by its type or an attribute.
     Information,
     /// An item that is switched off, or isn't normative.
+    #[cfg(feature = "doorstop")]
     Inactive,
 }
 
@@ -43,13 +44,19 @@ impl LeftOut {
             Self::Document => "that are documents of their own",
             Self::Copy => "equal to those of another file",
             Self::Information => "that are information",
+            #[cfg(feature = "doorstop")]
             Self::Inactive => "not active or not normative",
         }
     }
 
     /// Returns whether such an object could have been a requirement.
     const fn is_doubt(self) -> bool {
-        !matches!(self, Self::Copy | Self::Information | Self::Inactive)
+        match self {
+            Self::Copy | Self::Information => false,
+            #[cfg(feature = "doorstop")]
+            Self::Inactive => false,
+            _ => true,
+        }
     }
 }
 

@@ -23,7 +23,7 @@ pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
         None => Campaign::load(&plan.campaign)?.requirements,
     };
     let Some(path) = path else {
-        if !requirements::has_file(plan) {
+        if !has_file(plan) {
             return Ok(Requirements { title: plan.title.clone(), ..Requirements::default() });
         }
         let reason = "it names no file of requirements, and was planned with one".to_owned();
@@ -39,6 +39,11 @@ pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
         });
     }
     Ok(requirements)
+}
+
+/// Returns whether the campaign of a plan has a file of requirements.
+pub(crate) fn has_file(plan: &Plan) -> bool {
+    !(plan.requirements.is_empty() && plan.not_by_test.is_empty() && plan.accounts.is_empty())
 }
 
 /// Adds to the requirements of a file those that scenarios have of their own, which are checked as

@@ -1,6 +1,5 @@
 //! Requirements of a campaign: read from their file and put into its cases.
 
-use super::Plan;
 use octant_scenario::read::requirement::{MeasureTextError, limit_of, path_of};
 use octant_verdict::file::{Checker, read};
 use octant_verdict::requirement::{Check, EnsembleRequirement, Limit, Requirement, Requirements};
@@ -84,11 +83,6 @@ fn one_sided(requirements: &Requirements, text: &str) -> Vec<RequirementsProblem
         })
     };
     checks().filter_map(problem).collect()
-}
-
-/// Returns whether the campaign of a plan has a file of requirements.
-pub(crate) fn has_file(plan: &Plan) -> bool {
-    !(plan.requirements.is_empty() && plan.not_by_test.is_empty() && plan.accounts.is_empty())
 }
 
 /// Lists the requirements of a file that are verified by runs.

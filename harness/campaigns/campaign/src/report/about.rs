@@ -1,8 +1,7 @@
 //! Texts of a campaign's requirements, from its file and from its scenarios.
 
-use crate::judge::trace::requirements_of;
+use crate::judge::trace::{has_file, requirements_of};
 use crate::plan::Plan;
-use crate::plan::requirements::has_file;
 use octant_verdict::Comparison;
 use octant_verdict::requirement::{Check, Limit, Requirement, Requirements, Verification};
 

@@ -100,10 +100,10 @@ fn documents_of_requirements() {
     );
     part.row(
         "d.sdoc",
-        "a section that isn't closed",
-        &sdoc(&["[[SECTION]]\nTITLE: S\n"]),
+        "no title of the document",
+        "[DOCUMENT]\nVERSION: 1\n",
         used(0),
-        Ends::Refused("isn't closed"),
+        Ends::Refused("has no TITLE"),
     );
     let mut reqif_row = |holds: &str, text: &str, counts: Counts, ends: Ends| {
         part.row("d.reqif", holds, text, counts, ends);

@@ -11,7 +11,7 @@
 //! ]
 //! ```
 
-use super::write::{array, entry, quoted};
+use super::entries::{array, entry, quoted};
 use crate::table::Reader;
 use octant_account::{Account, AccountEntry, Weight};
 use octant_toml_tree::Value;

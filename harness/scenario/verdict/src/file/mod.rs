@@ -15,6 +15,7 @@
 //! ```
 
 mod accounts;
+mod entries;
 mod read;
 mod write;
 
