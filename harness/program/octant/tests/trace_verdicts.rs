@@ -121,6 +121,41 @@ fn requirements_that_may_be_missing_are_inconclusive_everywhere() {
     assert!(said.contains("changed after the campaign was planned"), "{said}");
 }
 
+/// A document of another tool stands in place of a `requirements.toml`, and its hash is a part of the plan.
+#[test]
+fn a_campaign_takes_a_document_of_another_tool() {
+    let text = CAMPAIGN
+        .replace("replicates = 40", "replicates = 2")
+        .replace("requirements.toml", "requirements.sdoc");
+    let bench = Bench::new(&text);
+    lower(&bench, "20 %");
+    let (status, said) =
+        says(&bench, &["requirements", "convert", "requirements.toml", "requirements.sdoc"]);
+    assert_eq!(status, 0, "{said}");
+    let (bench, plan, _) = bench.fill(|_, _, _| {});
+    let traced = agree(&bench, 0, "pass");
+    for id in ["CAL-1", "NAV-1"] {
+        assert_eq!(verdict_of(&traced, id), "pass");
+    }
+    let path = bench.at("requirements.sdoc");
+    let document = std::fs::read_to_string(&path).unwrap();
+    let hash = blake3::hash(document.as_bytes()).to_hex();
+    let lines = plan.accounts[0].lines();
+    assert!(lines[0].starts_with("requirements.sdoc: "), "{lines:?}");
+    assert!(lines.contains(&format!("note: BLAKE3 of the document {hash}")), "{lines:?}");
+    // A comment more is another document.
+    std::fs::write(&path, format!("{document}\n[TEXT]\nSTATEMENT: x\n")).unwrap();
+    let (status, said) = says(&bench, &["campaign", "trace", "out"]);
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains("changed after the campaign was planned"), "{said}");
+    // A measure that no run has is refused by its requirement.
+    let wrong = document.replacen("MEASURE: ", "MEASURE: no.", 1);
+    std::fs::write(&path, wrong).unwrap();
+    let (status, said) = says(&bench, &["campaign", "plan", "campaign.toml", "--out", "other"]);
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains(".measure: "), "{said}");
+}
+
 #[test]
 fn a_failing_requirement_of_a_scenario_is_in_the_trace_and_fails_everywhere() {
     let (bench, ..) = modest_and_filled(|index, _, result| {

@@ -101,6 +101,12 @@ impl Account {
         }
     }
 
+    /// Gives the input another name in messages.
+    #[must_use]
+    pub fn renamed(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
     /// Adds units that were used as they were found.
     #[must_use]
     pub fn used(mut self, count: u64) -> Self {

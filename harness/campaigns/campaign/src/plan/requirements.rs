@@ -1,5 +1,9 @@
 //! Requirements of a campaign: read from their file and put into its cases.
 
+use octant_account::AccountEntry;
+use octant_requirements::Imported;
+use octant_requirements::exchange::{self, ExchangeError};
+use octant_requirements::format::ExchangeFormat;
 use octant_scenario::read::requirement::{MeasureTextError, limit_of, path_of};
 use octant_verdict::file::{Checker, read};
 use octant_verdict::requirement::{Check, EnsembleRequirement, Limit, Requirement, Requirements};
@@ -44,12 +48,16 @@ fn number(measure: &str, limit: &Limit) -> Result<f64, MeasureTextError> {
     }
 }
 
-/// Reads a file of requirements, whose measures and limits must be those of a run.
+/// Reads a file of requirements, whose measures and limits must be those of a run: a `requirements.toml`, or a document of
+/// another tool, whose account and hash are among the accounts then.
 ///
 /// # Errors
 /// If it can't be read or isn't valid: every problem with its place.
 pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
     let file = path.display().to_string();
+    if !path.is_dir() && matches!(ExchangeFormat::of(path), Some(format) if is_document(format)) {
+        return document(path, &file);
+    }
     let text = std::fs::read_to_string(path).map_err(|error| RequirementsError {
         file: file.clone(),
         problems: vec![RequirementsProblem {
@@ -62,6 +70,49 @@ pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
     let requirements = read(&text, &file, &Measures)?;
     let problems = one_sided(&requirements, &text);
     if problems.is_empty() { Ok(requirements) } else { Err(RequirementsError { file, problems }) }
+}
+
+/// Returns whether a format is one of another tool, in one file.
+fn is_document(format: ExchangeFormat) -> bool {
+    !matches!(format, ExchangeFormat::Toml | ExchangeFormat::Doorstop)
+}
+
+/// Reads a document of another tool, with the usual names of attributes.
+fn document(path: &Path, file: &str) -> Result<Requirements, RequirementsError> {
+    let fail = |message: String| RequirementsError {
+        file: file.to_owned(),
+        problems: vec![RequirementsProblem::new((1, 1), "", message)],
+    };
+    let imported = exchange::read(path, None, &Measures).map_err(|error| match error {
+        ExchangeError::Requirements(error) => error,
+        other => fail(other.to_string()),
+    })?;
+    let bytes = std::fs::read(path).map_err(|error| fail(error.to_string()))?;
+    let Imported { mut requirements, account, .. } = imported;
+    // A document can be in another folder where the plan is read again.
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let hash = format!("BLAKE3 of the document {}", blake3::hash(&bytes).to_hex());
+    let names = "its attributes have the usual names";
+    let account = account
+        .renamed(name)
+        .note(AccountEntry::fact(true, hash))
+        .note(AccountEntry::fact(true, names));
+    requirements.accounts.push(account);
+    let mut problems = Vec::new();
+    for requirement in &requirements.requirements {
+        let Some(check) = requirement.check() else { continue };
+        let measure = Measures.measure(&check.measure);
+        if let Err(error) = measure.and_then(|()| Measures.limit(&check.measure, &check.limit)) {
+            let of = format!("requirements.{}.measure", requirement.id);
+            problems.push(RequirementsProblem::new((1, 1), of, error));
+        }
+    }
+    problems.extend(one_sided(&requirements, ""));
+    if problems.is_empty() {
+        Ok(requirements)
+    } else {
+        Err(RequirementsError { file: file.to_owned(), problems })
+    }
 }
 
 /// Finds limits on only one side of a signed measure.
