@@ -170,7 +170,8 @@ fn one(
             (Some(check.measure.clone()), Some(check.comparison.sign()), Some(check.limit))
         }
         (None, Some(result)) => {
-            (Some(result.measure), Some(result.comparison.sign()), Some(result.limit))
+            let limit = result.written_limit();
+            (Some(result.measure), Some(result.comparison.sign()), Some(limit))
         }
         (None, None) => (None, None, None),
     };
