@@ -3,7 +3,7 @@
 use crate::motion::{dynamic_error, error_after_deg};
 use crate::reading::Series;
 use crate::repeatability::greatest_difference_deg;
-use crate::settle::{SettlePoint, settle_point, settling_time_s};
+use crate::settle::{SettlePoint, settle_point, settling};
 use serde::{Deserialize, Serialize};
 
 /// A heading test.
@@ -59,8 +59,10 @@ pub struct HeadingScore {
     pub latitude_deg: f64,
     /// Resolution of the headings that were read, deg.
     pub resolution_deg: f64,
-    /// Longest settling time of the run-ups, min.
+    /// Longest settling time of the run-ups, min; where one isn't settled the earliest time at which it could be.
     pub settling_time_min: Option<f64>,
+    /// True if every run-up settled.
+    pub settled: bool,
     /// Settle point heading of the first run-up, deg.
     pub settle_point_heading_deg: Option<f64>,
     /// Settle point error of the run-up in which it is largest, deg.
@@ -86,8 +88,10 @@ pub struct HeadingScore {
 /// Settling and settle point over the run-ups, on a table that moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SettledScore {
-    /// Longest settling time, min.
+    /// Longest settling time, min; where a run-up isn't settled the earliest time at which it could be.
     pub settling_time_min: Option<f64>,
+    /// True if every run-up settled.
+    pub settled: bool,
     /// Largest settle point error, deg.
     pub settle_point_error_deg: Option<f64>,
     /// Largest root mean square of the ten readings about their mean, deg.
@@ -108,8 +112,10 @@ pub struct PointScore {
 /// Results of one run-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunUpScore {
-    /// Settling time, min.
+    /// Settling time, min; of a unit that isn't settled the earliest time at which it could be.
     pub settling_time_min: Option<f64>,
+    /// True if it settled.
+    pub settled: bool,
     /// Settle point.
     pub settle_point: Option<SettlePoint>,
     /// Settle point after the table stopped.
@@ -129,10 +135,12 @@ impl RunUpScore {
         let [from_s, to_s] = plan.motion_s.unwrap_or([all_s; 2]);
         // On a table that moves from the start the readings are taken in its motion, else before it.
         let until_s = if plan.test == HeadingTest::SettleInMotion { to_s } else { from_s };
-        let settled_s = settling_time_s(series, until_s.min(all_s));
-        let point = settled_s.and_then(|settled_s| settle_point(series, settled_s, until_s));
+        let settling = settling(series, until_s.min(all_s));
+        let settled = settling.filter(|settling| settling.settled);
+        let point = settled.and_then(|settled| settle_point(series, settled.time_s, until_s));
         let mut score = Self {
-            settling_time_min: settled_s.map(|settled_s| settled_s / 60.0),
+            settling_time_min: settling.map(|settling| settling.time_s / 60.0),
+            settled: settled.is_some(),
             settle_point: point,
             ..Self::default()
         };
@@ -175,6 +183,7 @@ impl HeadingScore {
         };
         let settled = SettledScore {
             settling_time_min: worst(all, |one| one.settling_time_min),
+            settled: all.iter().all(|one| one.settled),
             settle_point_error_deg: worst(all, |one| one.settle_point?.error_deg),
             readings_rms_deg: worst(all, |one| Some(one.settle_point?.readings_rms_deg)),
             repeatability_deg: points(|one| one.settle_point),
@@ -191,6 +200,7 @@ impl HeadingScore {
             latitude_deg: plan.latitude_deg,
             resolution_deg: plan.resolution_deg,
             settling_time_min: at_rest.settling_time_min,
+            settled: at_rest.settled,
             settle_point_heading_deg: first.map(|point| point.heading_deg),
             settle_point_error_deg: at_rest.settle_point_error_deg,
             readings_rms_deg: at_rest.readings_rms_deg,
@@ -201,6 +211,16 @@ impl HeadingScore {
             dynamic_amplitude_deg: worst(all, |one| one.dynamic_amplitude_deg),
             dynamic_frequency_hz: worst(all, |one| one.dynamic_frequency_hz),
             run_ups,
+        }
+    }
+
+    /// Returns whether a measure (its path, without bars) is the settling time of a unit that isn't settled: a lower bound.
+    #[must_use]
+    pub fn is_unsettled(&self, measure: &str) -> bool {
+        match measure {
+            "heading.settling_time_min" => !self.settled,
+            "heading.in_motion.settling_time_min" => !self.in_motion.is_some_and(|of| of.settled),
+            _ => false,
         }
     }
 

@@ -20,34 +20,43 @@ pub const POINT_EVERY_S: f64 = 1200.0;
 /// Number of readings of the settle point.
 pub const POINT_READINGS: usize = 10;
 
-/// Time from switching on until the compass is settled, s.
+/// Whether and when a compass settled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settling {
+    /// Settling time, s since switching on; of a compass that isn't settled the earliest time at which it could be: that of
+    /// the next reading.
+    pub time_s: f64,
+    /// True if it settled.
+    pub settled: bool,
+}
+
+/// Settling of a compass.
 ///
-/// Readings are due 30 min, 60 min, 90 min … after switching on, until `until_s`. `None` if the compass doesn't settle in
-/// that time, and if a reading is missing before it does: it may have been settled there.
+/// Readings are due 30 min, 60 min, 90 min … after switching on, until `until_s`. `None` if none of them is due, and if one
+/// is missing before the compass settles: it may have been settled there.
 #[must_use]
-pub fn settling_time_s(series: &Series, until_s: f64) -> Option<f64> {
+pub fn settling(series: &Series, until_s: f64) -> Option<Settling> {
     let mut last: Vec<Reading> = Vec::with_capacity(SETTLED_READINGS);
-    for number in 1u32.. {
-        let due_s = f64::from(number) * SETTLED_EVERY_S;
-        if due_s > until_s {
-            return None;
-        }
+    let mut due_s = SETTLED_EVERY_S;
+    while due_s <= until_s {
         let reading = series.at(due_s)?;
-        if reading.heading_deg.is_none() {
-            // The unit has no heading: it isn't settled.
-            last.clear();
-            continue;
-        }
         if last.len() == SETTLED_READINGS {
             last.remove(0);
         }
-        last.push(*reading);
-        let band_deg = angle::band(&shown(&last)?.headings_deg)?;
-        if last.len() == SETTLED_READINGS && band_deg <= SETTLED_BAND_DEG {
-            return Some(due_s);
+        if reading.heading_deg.is_some() {
+            last.push(*reading);
+        } else {
+            // The unit has no heading: it isn't settled.
+            last.clear();
         }
+        if last.len() == SETTLED_READINGS
+            && angle::band(&shown(&last)?.headings_deg)? <= SETTLED_BAND_DEG
+        {
+            return Some(Settling { time_s: due_s, settled: true });
+        }
+        due_s += SETTLED_EVERY_S;
     }
-    None
+    (due_s > SETTLED_EVERY_S).then_some(Settling { time_s: due_s, settled: false })
 }
 
 /// Headings of some readings, as shown by a unit whose base stays at the mean of its true headings.

@@ -5,7 +5,7 @@ use super::difference::difference;
 use super::findings::findings;
 use super::method::MethodRun;
 use super::refusal::{RefusedRun, explained};
-use super::scores_text::{alignment_line, navigation_lines, solution_line};
+use super::scores_text::{alignment_line, heading_lines, navigation_lines, solution_line};
 use crate::observers::at_rest::instrument_noise;
 use octant_base::display::DisplayUnits;
 use octant_base::number;
@@ -421,6 +421,7 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
             navigation_lines(n, units).into_iter().for_each(&mut line);
         }
     }
+    summary.heading.iter().flat_map(heading_lines).for_each(&mut line);
     let differences = std::iter::once((&summary.method, &summary.counterfactual))
         .chain(summary.baseline.iter().map(|b| (&b.label, &b.counterfactual)));
     for (label, difference) in differences {
