@@ -267,3 +267,25 @@ fn a_percentage_is_the_decimal_that_is_written() {
         assert!(probability(text).is_err(), "{text}");
     }
 }
+
+#[test]
+fn the_factor_sec_phi_belongs_to_errors_of_a_heading() {
+    let with = |measure: &str, flag: &str| {
+        format!("{HEAD}measure = \"{measure}\"\nlimit = \"1 deg\"\nsecant_latitude = {flag}\n")
+    };
+    let read = |text: &str| file::read(text, "r.toml", &Anything).unwrap();
+    for (flag, expected) in [("true", true), ("false", false)] {
+        let found = read(&with("|heading.settle_point_error_deg|", flag));
+        let check = found.requirements[0].check().unwrap();
+        assert_eq!(check.secant_latitude, expected);
+        // It comes back from the file that is written.
+        assert_eq!(read(&file::write(&found)), found);
+    }
+    let refused = problems(&with("navigation.heading_error_arcmin.max", "true"));
+    assert_eq!(refused.len(), 1, "{refused:?}");
+    for part in ["7:", "secant_latitude", "no factor sec φ", "heading.repeatability_deg"] {
+        assert!(refused[0].contains(part), "{part:?} is not in {refused:?}");
+    }
+    let no_flag = problems(&with("heading.repeatability_deg", "\"yes\""));
+    assert!(no_flag[0].contains("expected true or false"), "{no_flag:?}");
+}
