@@ -4,7 +4,7 @@ use octant_base::control::Control;
 use octant_earth::ellipsoid::EARTH_RATE_RADPS;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
-use octant_score::summary::Summary;
+use octant_score::summary::{HeadingScore, Summary};
 use octant_verdict::{Verdict, measures};
 use std::path::Path;
 
@@ -28,7 +28,7 @@ fn verdict_of(summary: &Summary, id: &str) -> Verdict {
 #[test]
 fn a_bias_of_the_east_gyro_is_the_settle_point_error_of_its_closed_form() {
     for (latitude_deg, bias_degph) in
-        [(0.0, 0.2), (45.0, 0.2), (45.0, -0.2), (70.0, 0.2), (-33.0, -0.2)]
+        [(0.0, 0.25), (45.0, 0.25), (45.0, -0.15), (70.0, 0.25), (-33.0, -0.15)]
     {
         let summary = run(
             "settle",
@@ -66,8 +66,10 @@ fn run_ups_are_restarts_with_another_noise_and_the_same_errors() {
     let three = run("settle", &[]).heading.unwrap();
     let one = run("settle", &["procedure.heading_test.run_ups=1"]).heading.unwrap();
     assert_eq!(three.run_ups.len(), 3);
-    // The first run-up is that of a run with one.
-    assert_eq!(three.run_ups[0], one.run_ups[0]);
+    // The noise of a run with one run-up is another one; the errors of the instrument are the same.
+    let first =
+        |heading: &HeadingScore| heading.run_ups[0].settle_point.unwrap().error_deg.unwrap();
+    assert!((first(&three) - first(&one)).abs() < 0.01, "{three:?} {one:?}");
     let points: Vec<f64> =
         three.run_ups.iter().map(|one| one.settle_point.unwrap().error_deg.unwrap()).collect();
     assert!(points[0] != points[1] && points[1] != points[2], "{points:?}");
