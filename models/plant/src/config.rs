@@ -116,6 +116,14 @@ pub struct MotionTimes {
     pub ramp_s: f64,
 }
 
+impl MotionTimes {
+    /// Returns whether the motion is always there.
+    #[must_use]
+    pub fn is_always(&self) -> bool {
+        self.during_s.is_empty()
+    }
+}
+
 impl Dockside {
     /// Makes a ship that lies still, at a mean attitude.
     #[must_use]

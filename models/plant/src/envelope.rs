@@ -12,7 +12,7 @@ pub(crate) struct Envelope {
 impl Envelope {
     /// Makes an envelope; `None` for a motion that is always there.
     pub(crate) fn of(times: &MotionTimes) -> Option<Box<Self>> {
-        (!times.during_s.is_empty()).then(|| Box::new(Self { times: times.clone() }))
+        (!times.is_always()).then(|| Box::new(Self { times: times.clone() }))
     }
 
     /// Factor and its first two derivatives at a time, s since the start.

@@ -180,7 +180,7 @@ fn motion_slots(motion: usize) -> [usize; 4] {
 
 fn put_ship(ship: &Dockside, values: &mut CellValues) -> Result<(), PlantValueError> {
     let Dockside { mean, roll, pitch, yaw, surge, sway, heave, mooring_offset_m, times } = ship;
-    if *times != MotionTimes::default() {
+    if !times.is_always() {
         return Err(PlantValueError::NoParameter("the beginning of the ship's motion"));
     }
     put_attitude(mean, values);

@@ -85,7 +85,7 @@ fn every_problem_is_told_with_its_place() {
             "r.toml:2:1: requirements.N-1.measure: missing: a requirement has a measure, or says how \
              else it is verified (verification = \"analysis\", \"inspection\" or \"open\", or the names of tests in tests)",
             "r.toml:5:1: requirements.N-1.mesure: unknown key, did you mean \"measure\"? known: id, \
-             title, text, measure, comparison, limit, pass, confidence, verification, tests, \
+             title, text, measure, comparison, limit, secant_latitude, pass, confidence, verification, tests, \
              clause, rationale, parents, section, under, kind, identifier, attributes, formatted",
             "r.toml:7:6: requirements.N-1.id: found \"N-1\" a second time, the first is in line 2; \
              expected unique ids",
