@@ -227,7 +227,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::CaseAttitude;
+    use crate::config::{CaseAttitude, MotionTimes};
     use crate::motion::{dockside_default, dockside_iso_8728};
     use crate::trig::{rx_t, rz_t};
     use octant_earth::ellipsoid::{meridian_radius_m, transverse_radius_m};
@@ -236,18 +236,27 @@ mod tests {
     /// angular acceleration, and the velocity that follows from the position.
     #[test]
     fn derivatives_agree_with_differences() {
-        let mut ship = crate::motion::dockside_default(9);
-        ship.mean = CaseAttitude { heading_rad: 0.6, pitch_rad: 0.1, roll_rad: -0.2 };
+        let mut always = crate::motion::dockside_default(9);
+        always.mean = CaseAttitude { heading_rad: 0.6, pitch_rad: 0.1, roll_rad: -0.2 };
+        // Over ramps of 10 s the differences are as good as for the sinusoids: the factor's third derivative is 0.06/s³.
+        let times = MotionTimes { during_s: vec![[3.0, 24.0], [25.0, 60.0]], ramp_s: 10.0 };
+        let sometimes = config::Dockside { times, ..always.clone() };
         let site = PlantSite {
             latitude_rad: 0.9,
             longitude_rad: 0.2,
             height_m: 10.0,
             gravity: Default::default(),
         };
+        for ship in [always, sometimes] {
+            assert_derivatives(ship, site);
+        }
+    }
+
+    fn assert_derivatives(ship: config::Dockside, site: PlantSite) {
         let (period_s, h) = (0.1, 1e-3);
         let mut case =
             Case::new(&config::Motion::Dockside(ship), site, period_s, &[(0.05, 0.1)], true);
-        for k in 0..200 {
+        for k in 0..400 {
             let start_s = f64::from(k) * period_s;
             case.enter(start_s, 0);
             let now = case.motion(Node::Regular(0));
@@ -271,6 +280,44 @@ mod tests {
             // h²/6 · 0.2 m (2π/6 s)³: 4e-8, and the angles' last bit, 1e-16 rad over 2 ms: 7e-7.
             assert!((Vector3::new(north, east, down) - here.velocity_mps).norm() < 1.5e-6);
         }
+    }
+
+    /// Outside of its times a case is at rest at its mean, within them it moves as one that always does.
+    #[test]
+    fn a_motion_is_there_at_its_times() {
+        let always = dockside_default(9);
+        let times = MotionTimes { during_s: vec![[20.0, 60.0], [100.0, 140.0]], ramp_s: 5.0 };
+        let sometimes = config::Dockside { times, ..always.clone() };
+        let site = PlantSite {
+            latitude_rad: 0.9,
+            longitude_rad: 0.2,
+            height_m: 0.0,
+            gravity: Default::default(),
+        };
+        let case = |ship: config::Dockside| {
+            Case::new(&config::Motion::Dockside(ship), site, 0.1, &[(0.05, 0.1)], true)
+        };
+        let (moving, windowed) = (case(always), case(sometimes.clone()));
+        for (time_s, factor) in [
+            (0.0, 0.0),
+            (19.9, 0.0),
+            (22.5, 0.5),
+            (25.0, 1.0),
+            (40.0, 1.0),
+            (57.5, 0.5),
+            (60.0, 0.0),
+            (80.0, 0.0),
+            (120.0, 1.0),
+            (141.0, 0.0),
+        ] {
+            let (all, part) = (moving.whereabouts(time_s), windowed.whereabouts(time_s));
+            assert!((part.roll_rad - factor * all.roll_rad).abs() < 1e-15, "{time_s}");
+            assert!((part.heading_rad - factor * all.heading_rad).abs() < 1e-15, "{time_s}");
+        }
+        // Nothing is interpolated across a beginning or an end.
+        let mut windowed = case(sometimes);
+        windowed.open_windows(5_000_000, &[(0.0025, 0.005); 8]);
+        assert!(windowed.integral_in([(0.0, 1.0); 2], |v| *v).is_none());
     }
 
     /// Compares the motion interpolated in windows with the motion computed anew at every node:

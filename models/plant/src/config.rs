@@ -102,6 +102,26 @@ pub struct Dockside {
     /// Constant offset of the instrument from the site, the dock's reference position that
     /// [`AidingKind::DockPosition`] measures; north, east, down, m.
     pub mooring_offset_m: [f64; 3],
+    /// Times at which it moves; by default always.
+    #[serde(default)]
+    pub times: MotionTimes,
+}
+
+/// Times at which a motion is there: between them the case is at rest, at its mean attitude and position.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct MotionTimes {
+    /// Beginnings and ends, s since the start, in their order; none: the motion is always there.
+    pub during_s: Vec<[f64; 2]>,
+    /// Time at each end over which the motion grows or dies away, s.
+    pub ramp_s: f64,
+}
+
+impl MotionTimes {
+    /// Returns whether the motion is always there.
+    #[must_use]
+    pub fn is_always(&self) -> bool {
+        self.during_s.is_empty()
+    }
 }
 
 impl Dockside {
@@ -117,6 +137,7 @@ impl Dockside {
             sway: Vec::new(),
             heave: Vec::new(),
             mooring_offset_m: [0.0; 3],
+            times: MotionTimes::default(),
         }
     }
 }

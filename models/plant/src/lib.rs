@@ -23,6 +23,7 @@ pub mod course;
 mod disturbed;
 pub mod draw;
 mod encoder;
+mod envelope;
 pub mod flicker;
 pub mod further;
 mod gimbal;

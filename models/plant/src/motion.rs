@@ -1,6 +1,6 @@
 //! Ready-made sways of a moored ship.
 
-use crate::config::{CaseAttitude, Dockside, Sinusoid};
+use crate::config::{CaseAttitude, Dockside, MotionTimes, Sinusoid};
 use crate::draw::phases;
 use octant_earth::units::DEG;
 
@@ -22,6 +22,7 @@ pub fn dockside_default(seed: u64) -> Dockside {
         sway: one(0.2, 7.0, phase[4]),
         heave: one(0.2, 8.0, phase[5]),
         mooring_offset_m: [0.0; 3],
+        times: MotionTimes::default(),
     }
 }
 
@@ -45,5 +46,6 @@ pub fn dockside_iso_8728(seed: u64) -> Dockside {
         sway: one(ISO_8728_ACCELERATION_MPS2 / (omega * omega), period_s, phase[2]),
         heave: Vec::new(),
         mooring_offset_m: [0.0; 3],
+        times: MotionTimes::default(),
     }
 }

@@ -4,6 +4,7 @@
 use super::kinematics::{Dof, SixDof};
 use crate::config::{Dockside, Sinusoid};
 use crate::course::Course;
+use crate::envelope::Envelope;
 
 /// Samples after which the phasors are computed anew from the time, before rounding errors add up.
 const RESET_SAMPLES: u32 = 256;
@@ -64,6 +65,8 @@ pub(crate) struct Sway {
     start_s: f64,
     /// Regular nodes, s from the start of an interval.
     nodes_s: Vec<f64>,
+    /// Growth and decay of the motion, where it isn't always there.
+    envelope: Option<Box<Envelope>>,
     /// Motion from outside, to be given anew before every interval.
     pub(crate) course: Option<Box<Course>>,
 }
@@ -72,7 +75,7 @@ octant_state::state! {
     Sway {
         values: until_reset, start_s, course;
         parts: components;
-        kept: ends, to_node, period_s, nodes_s;
+        kept: ends, to_node, period_s, nodes_s, envelope;
         check: Self::check_course
     }
 }
@@ -122,8 +125,14 @@ impl Sway {
             until_reset: 0,
             start_s: 0.0,
             nodes_s: nodes_s.to_vec(),
+            envelope: Envelope::of(&dockside.times),
             course: None,
         }
+    }
+
+    /// Returns whether the motion is always there.
+    pub(crate) fn is_steady(&self) -> bool {
+        self.envelope.is_none()
     }
 
     /// The same sway without a motion from outside, in intervals of another length with other nodes.
@@ -139,6 +148,7 @@ impl Sway {
             until_reset: 0,
             start_s: 0.0,
             nodes_s: nodes_s.to_vec(),
+            envelope: self.envelope.clone(),
             course: None,
         }
     }
@@ -199,13 +209,25 @@ impl Sway {
     pub(crate) fn at_node(&self, node: usize) -> SixDof {
         let n = self.components.len();
         let to_node = &self.to_node[node * n..(node + 1) * n];
-        self.sum(|i, component| component.turned(to_node[i]))
+        let six = self.sum(|i, component| component.turned(to_node[i]));
+        self.scaled(six, self.start_s + self.nodes_s[node])
     }
 
     /// Sway at `offset_s` after the start of the present interval.
     pub(crate) fn at_offset(&self, offset_s: f64) -> SixDof {
         let from_middle_s = offset_s - 0.5 * self.period_s;
-        self.sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)))
+        let six = self
+            .sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)));
+        self.scaled(six, self.start_s + offset_s)
+    }
+
+    /// Sway with its growth and decay.
+    #[inline(always)]
+    fn scaled(&self, mut six: SixDof, time_s: f64) -> SixDof {
+        if let Some(envelope) = &self.envelope {
+            envelope.scale(&mut six, time_s);
+        }
+        six
     }
 
     /// Sway and motion from outside, if there is one, at a regular node.
@@ -234,7 +256,8 @@ impl Sway {
 
     /// Sway and motion from outside at any time, s since the start.
     pub(crate) fn at_time(&self, time_s: f64) -> SixDof {
-        self.on_course(self.sum(|_, component| component.phase_at(time_s)), time_s)
+        let six = self.sum(|_, component| component.phase_at(time_s));
+        self.on_course(self.scaled(six, time_s), time_s)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Checks of a configuration: every configuration that passes can be computed with.
 
 use crate::config::{
-    AidingKind, Dockside, Extensions, GaussMarkov, GimbalErrors, Motion, PlantConfig, Sinusoid,
+    AidingKind, Dockside, Extensions, GaussMarkov, GimbalErrors, Motion, MotionTimes, PlantConfig,
+    Sinusoid,
 };
 use octant_earth::units::DEG;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -157,6 +158,22 @@ fn dockside(ship: &Dockside) -> Check {
             require(allowed, &field("period_s"), period_s, "0.01 s to 1e7 s")?;
             finite(&field("phase_rad"), sinusoid.phase_rad)?;
         }
+    }
+    times(&ship.times)
+}
+
+/// Checks that intervals follow one another, and are as long as their two ramps.
+fn times(MotionTimes { during_s, ramp_s }: &MotionTimes) -> Check {
+    not_negative("motion.times.ramp_s", *ramp_s)?;
+    let mut last_s = f64::NEG_INFINITY;
+    for (index, [from_s, to_s]) in during_s.iter().enumerate() {
+        let field = |end: usize| format!("motion.times.during_s[{index}][{end}]");
+        finite(&field(0), *from_s)?;
+        require(*from_s >= last_s, &field(0), *from_s, "after the interval before it")?;
+        finite(&field(1), *to_s)?;
+        let long = *to_s > *from_s && to_s - from_s >= 2.0 * ramp_s;
+        require(long, &field(1), *to_s, "after the interval's beginning, by two ramps or more")?;
+        last_s = *to_s;
     }
     Ok(())
 }

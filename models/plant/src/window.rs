@@ -52,6 +52,10 @@ impl Window {
     /// Makes a window for samples with these regular nodes (s from the start of their interval, and
     /// weight); `None` if it would cost more work than it saves.
     pub(crate) fn new(sway: &Sway, period_ns: u64, nodes: &[(f64, f64)]) -> Option<Self> {
+        // Where a motion begins or ends it has a third derivative that jumps, which nodes don't see.
+        if !sway.is_steady() {
+            return None;
+        }
         let period_s = period_ns as f64 * 1e-9;
         let fastest_radps = sway.fastest_radps();
         let samples = (2.0 * REACH_RAD / (fastest_radps * period_s)).min(SAMPLES_MAX) as u64;

@@ -298,7 +298,7 @@ fn a_state_of_an_earlier_version_is_refused_in_words() {
         let stored = std::fs::read(format!("{folder}/plant-{version}.bin")).unwrap();
         assert_eq!(
             Plant::load(&stored).unwrap_err().to_string(),
-            format!("the state of a plant has version {version}, this program reads version 5")
+            format!("the state of a plant has version {version}, this program reads version 6")
         );
     }
 }

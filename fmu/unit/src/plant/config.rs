@@ -179,7 +179,10 @@ fn motion_slots(motion: usize) -> [usize; 4] {
 }
 
 fn put_ship(ship: &Dockside, values: &mut CellValues) -> Result<(), PlantValueError> {
-    let Dockside { mean, roll, pitch, yaw, surge, sway, heave, mooring_offset_m } = ship;
+    let Dockside { mean, roll, pitch, yaw, surge, sway, heave, mooring_offset_m, times } = ship;
+    if !times.is_always() {
+        return Err(PlantValueError::NoParameter("the beginning of the ship's motion"));
+    }
     put_attitude(mean, values);
     values.set_reals(slot::MOORING_OFFSET, mooring_offset_m);
     for (index, sinusoids) in [roll, pitch, yaw, surge, sway, heave].into_iter().enumerate() {
@@ -210,6 +213,7 @@ fn ship(values: &CellValues) -> Result<Dockside, PlantValueError> {
         sway: motion(4)?,
         heave: motion(5)?,
         mooring_offset_m: values.reals(slot::MOORING_OFFSET),
+        times: MotionTimes::default(),
     })
 }
 

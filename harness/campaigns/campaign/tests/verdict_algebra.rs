@@ -234,7 +234,13 @@ impl Found {
             Self::NotANumber => ("navigation.longitude_error_arcmin.slope_per_day", 1.0),
         };
         let measure = measure.to_owned();
-        LimitCheck { id: "NAV-1".to_owned(), measure, comparison: Comparison::AtMost, limit }
+        LimitCheck {
+            id: "NAV-1".to_owned(),
+            measure,
+            comparison: Comparison::AtMost,
+            limit,
+            secant_latitude: false,
+        }
     }
 
     fn verdict(self) -> Verdict {
@@ -373,6 +379,7 @@ fn campaign(
         measure: Found::Kept.requirement().measure,
         comparison: Comparison::AtMost,
         limit: Limit::Number(1.0),
+        secant_latitude: false,
         ensemble,
     };
     let requirement = required::Requirement::new("NAV-1", "Near.", Verification::Test(check));

@@ -56,6 +56,7 @@ fn what_a_result_rests_on_is_kept_where_it_is_derived_again() {
         measure: "navigation.duration_h".to_owned(),
         comparison: Comparison::AtMost,
         limit: 0.17,
+        secant_latitude: false,
     };
     // Ten minutes are 0.1667 h.
     for (uncertainty, expected) in [

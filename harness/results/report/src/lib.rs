@@ -22,6 +22,7 @@ mod drift;
 pub mod fault_picture;
 pub mod filtered;
 mod gimbals;
+mod heading;
 pub mod innovations;
 pub mod inputs;
 pub mod marks;

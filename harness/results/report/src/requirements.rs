@@ -48,6 +48,9 @@ fn row(data: &ReportData, r: &RequirementResult) -> Markup {
             td.n data-label="Value" { (significant(r.value, 4)) }
             td.n data-label="Limit" {
                 (sign(r.comparison.sign())) " " (number::plain(unit.of(r.limit), 4))
+                @if let Some(limit) = r.at_equator {
+                    " (" (number::plain(unit.of(limit), 4)) " × sec φ)"
+                }
                 @if let Some(u) = r.uncertainty { " ± " (number::plain(unit.of(u), 3)) }
             }
             td.n data-label="Margin" { (significant(r.margin, 3)) }

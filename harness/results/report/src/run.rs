@@ -7,6 +7,7 @@ use super::calibration::calibration;
 use super::counterfactual::counterfactual;
 use super::drift::drift;
 use super::gimbals::gimbals;
+use super::heading::heading;
 use super::inputs::inputs;
 use super::marks::marks;
 use super::pacing::pacing;
@@ -34,6 +35,7 @@ pub fn render(data: &ReportData) -> String {
         Section::new("inputs", "Inputs", inputs(summary)),
         Section::new("faults", "Faults", faults(summary)),
         Section::new("effects", "What the faults did", counterfactual(data)),
+        Section::new("heading", "Heading test", heading(summary)),
         Section::new("navigation", "Navigation", drift(data)),
         Section::new("alignment", "Alignment", alignment(summary, &data.units)),
         Section::new("calibration", "Calibrated parameters", calibration(data)),

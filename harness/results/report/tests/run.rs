@@ -185,6 +185,7 @@ fn data() -> ReportData {
         measure: measure.to_owned(),
         comparison: Sign::AtMost,
         limit,
+        secant_latitude: false,
     };
     let requirements = [
         requirement("NAV-LAT", "navigation.latitude_error_arcmin.max", 1.0),

@@ -238,7 +238,7 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
         Verdict::Pass => match short {
             Some(short) => format!("met as far as it was done ({short})"),
             None if misbehaved => "met until an answer that may not be".to_owned(),
-            None => match hidden {
+            None => match hidden.or_else(|| unsettled(summary, &result)) {
                 Some(hidden) => hidden,
                 None => return result,
             },
@@ -278,6 +278,16 @@ fn hidden(summary: &Summary, result: &RequirementResult) -> Option<String> {
             (!holds).then(|| format!("{met} one may hide a value of up to {}", plain(most)))
         }
     }
+}
+
+/// Reason why a settling time below its limit shows nothing: the unit isn't settled, and the time is a lower bound.
+fn unsettled(summary: &Summary, result: &RequirementResult) -> Option<String> {
+    let heading = summary.heading.as_ref()?;
+    let time_min = result.value?;
+    heading.is_unsettled(result.measure.trim_matches('|')).then(|| {
+        let earliest = octant_base::number::plain(time_min, 6);
+        format!("the unit wasn't settled when its readings ended: {earliest} min is the earliest time at which it could be")
+    })
 }
 
 /// True if a broken limit stays broken in any case: that of a maximum, a count, a mark that was

@@ -23,7 +23,8 @@ pub fn results(summary: &Summary) -> Result<Vec<RequirementResult>, serde_json::
             id: result.id.clone(),
             measure: result.measure.clone(),
             comparison: result.comparison,
-            limit: result.limit,
+            limit: result.written_limit(),
+            secant_latitude: result.at_equator.is_some(),
         };
         let found = evaluate(&requirement, &document);
         // With an unknown uncertainty of the reference there was no value, and the result stays

@@ -9,6 +9,8 @@ pub use super::navigation::{
     ErrorScore, GapScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
 };
 
+pub use octant_heading::score::{HeadingScore, HeadingTest, RunUpScore};
+
 pub use octant_recorder::event::{
     DeviceClock, FaultResult, LatenessOverRun, LatenessQuantiles, PacingRecord,
 };
@@ -85,6 +87,9 @@ pub struct Summary {
     pub calibration: Option<CalibrationScore>,
     /// Navigation; null if the run had none, or no truth to compare it with.
     pub navigation: Option<NavigationScore>,
+    /// Heading test; left out if the run had none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heading: Option<HeadingScore>,
     /// Effect of the faults, compared with the twin without them; null without faults or without a
     /// twin.
     #[serde(default)]

@@ -1,7 +1,7 @@
 //! Comparison of a measure with its limit.
 
 use octant_verdict::decision::in_band;
-use octant_verdict::verdict::{Comparison, LimitCheck, Verdict};
+use octant_verdict::verdict::{Comparison, LimitCheck, Verdict, at_latitude};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -14,8 +14,11 @@ pub struct RequirementResult {
     pub measure: String,
     /// Comparison with the limit.
     pub comparison: Comparison,
-    /// The limit.
+    /// The limit; with the factor sec φ it is that at the site's latitude.
     pub limit: f64,
+    /// Limit at the equator, of a limit with the factor sec φ; null without the factor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_equator: Option<f64>,
     /// Value of the measure; null if the run doesn't have it.
     pub value: Option<f64>,
     /// Margin to the limit, negative if it is broken.
@@ -34,12 +37,25 @@ impl RequirementResult {
     #[must_use]
     pub fn sentence(&self) -> String {
         let (value, limit) = self.figures();
+        let secant = self.secant_words().map_or_else(String::new, |words| format!(" ({words})"));
         format!(
-            "{}: {} is {value}, required {} {limit}",
+            "{}: {} is {value}, required {} {limit}{secant}",
             self.id,
             self.measure,
             self.comparison.sign()
         )
+    }
+
+    /// Text `0.75 × sec φ` of a limit with that factor.
+    #[must_use]
+    pub fn secant_words(&self) -> Option<String> {
+        self.at_equator.map(|limit| format!("{} × sec φ", octant_base::number::plain(limit, 6)))
+    }
+
+    /// Limit as it was written, without the factor sec φ.
+    #[must_use]
+    pub fn written_limit(&self) -> f64 {
+        self.at_equator.unwrap_or(self.limit)
     }
 
     /// Derives margin and verdict from value and limit again. A result with a value that was
@@ -110,10 +126,18 @@ impl RequirementResult {
 /// Evaluates one requirement on a summary in JSON.
 #[must_use]
 pub fn evaluate(requirement: &LimitCheck, summary: &Value) -> RequirementResult {
-    let found = if requirement.limit.is_finite() {
+    let at_equator = requirement.secant_latitude.then_some(requirement.limit);
+    let limit = match measure("heading.latitude_deg", summary) {
+        Ok(latitude_deg) if requirement.secant_latitude => {
+            at_latitude(requirement.limit, latitude_deg)
+        }
+        // Without a latitude there is no measure that such a limit belongs to.
+        _ => requirement.limit,
+    };
+    let found = if limit.is_finite() {
         measure(&requirement.measure, summary).map_err(|error| error.to_string())
     } else {
-        Err(format!("limit {} is not a number", requirement.limit))
+        Err(format!("limit {limit} is not a number"))
     };
     let (value, reason) = match found {
         Ok(value) => (Some(value), None),
@@ -121,16 +145,17 @@ pub fn evaluate(requirement: &LimitCheck, summary: &Value) -> RequirementResult 
     };
     let verdict = match value {
         None => Verdict::Inconclusive,
-        Some(value) if requirement.comparison.holds(value, requirement.limit) => Verdict::Pass,
+        Some(value) if requirement.comparison.holds(value, limit) => Verdict::Pass,
         Some(_) => Verdict::Fail,
     };
     RequirementResult {
         id: requirement.id.clone(),
         measure: requirement.measure.clone(),
         comparison: requirement.comparison,
-        limit: requirement.limit,
+        limit,
+        at_equator,
         value,
-        margin: margin(requirement.comparison, value, requirement.limit),
+        margin: margin(requirement.comparison, value, limit),
         uncertainty: None,
         verdict,
         reason,

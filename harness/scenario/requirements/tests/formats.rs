@@ -50,11 +50,15 @@ fn verification() -> impl Strategy<Value = Verification> {
     let probability = (1u32..1000).prop_map(|n| f64::from(n) / 1000.0);
     let ensemble = maybe((probability.clone(), probability));
     let comparison = prop::sample::select(Comparison::ALL.to_vec());
-    let test = ("\\|?[a-z_]{1,8}(\\.[a-z_0-9]{1,8}){0,3}", comparison, limit, ensemble).prop_map(
-        |(measure, comparison, limit, ensemble)| {
+    let measure = prop_oneof![
+        4 => ("\\|?[a-z_]{1,8}(\\.[a-z_0-9]{1,8}){0,3}", Just(false)),
+        1 => (Just("heading.in_motion.repeatability_deg".to_owned()), any::<bool>()),
+    ];
+    let test = (measure, comparison, limit, ensemble).prop_map(
+        |((measure, secant_latitude), comparison, limit, ensemble)| {
             let ensemble =
                 ensemble.map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
-            Verification::Test(Check { measure, comparison, limit, ensemble })
+            Verification::Test(Check { measure, comparison, limit, secant_latitude, ensemble })
         },
     );
     let name = "[a-z/_]{1,12}(\\.rs)?::[a-zµ, :]{0,12}[a-z]";
@@ -228,6 +232,7 @@ fn the_escapes_of_a_document_follow_its_markup() {
         measure: "|calibration.gyro_x_|".to_owned(),
         comparison: Comparison::AtMost,
         limit: Limit::Number(1.0),
+        secant_latitude: false,
         ensemble: None,
     };
     let one = Requirement::new("A-1", "The |drift| is *small*.", Verification::Test(check));
@@ -286,7 +291,10 @@ proptest! {
         for (requirement, two) in all.requirements.iter_mut().zip(texts.chunks(2)) {
             requirement.text = format!("a {} b", two[0]);
             match &mut requirement.verification {
-                Verification::Test(check) => check.measure = format!("|{}|", two[1]),
+                Verification::Test(check) => {
+                    // No measure of that name takes the factor.
+                    (check.measure, check.secant_latitude) = (format!("|{}|", two[1]), false);
+                }
                 Verification::Tests(tests) => tests.push(two[1].clone()),
                 _ => {}
             }

@@ -12,6 +12,7 @@ fn tested(id: &str, ensemble: Option<EnsembleRequirement>) -> Requirement {
         measure: "navigation.radial_error_nmi.max".to_owned(),
         comparison: Comparison::AtMost,
         limit: Limit::Quantity("1 nmi".to_owned()),
+        secant_latitude: false,
         ensemble,
     };
     Requirement::new(id, "It stays close.", Verification::Test(check))

@@ -220,6 +220,13 @@ pub(crate) fn without_effect(document: &Table) -> Vec<(&'static str, &'static st
     if is(key!(motion.kind), "static") {
         add(&[key!(motion.ship)], "without effect with motion.kind = \"static\"");
     }
+    if !keys_of!(motion.ship: from, duration).iter().any(|path| document.at(path).is_some()) {
+        add(&[key!(motion.ship.ramp)], "without effect without motion.ship.from or .duration");
+    }
+    let run_ups = document.at(key!(procedure.heading_test.run_ups)).map(|node| &node.value);
+    if matches!(run_ups, None | Some(Value::Integer(1))) {
+        add(&[key!(procedure.heading_test.off)], "without effect with run_ups = 1");
+    }
     if is(key!(procedure.alignment.method), "coarse") {
         add(
             &keys_of!(procedure.alignment: tilt, azimuth, velocity, attitude_error, velocity_error),

@@ -35,11 +35,11 @@ pub use files::FilePlaces;
 pub use keys::{SCHEMA, fault_dimension};
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DescriptionChoice, DocksideSpec, Drive,
-    EndpointSpec, EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InstrumentLog,
-    InterfaceChoice, KnownStamps, Live, Made, Mapped, Messages, Method, MotionComponent,
-    MotionSpec, NumberedStops, ParameterDistribution, Process, Realtime, RecordSpec,
-    RequirementSpec, Scenario, Set, Setting, ShipSpectrum, SourceSpec, Speaks, TableDriver,
-    UnitPulses, UnknownFault,
+    EndpointSpec, EntryPlace, Fault, FileName, FileNameError, Fmu, HeadingTestKind,
+    HeadingTestSpec, Instrument, InstrumentLog, InterfaceChoice, KnownStamps, Live, Made, Mapped,
+    Messages, Method, MotionComponent, MotionSpan, MotionSpec, NumberedStops,
+    ParameterDistribution, PowerCycle, Process, Realtime, RecordSpec, RequirementSpec, Scenario,
+    Set, Setting, ShipSpectrum, SourceSpec, Speaks, TableDriver, UnitPulses, UnknownFault,
 };
 pub use octant_instruments::grades::{FLICKER, GRADES, GradeSheet};
 pub use octant_quantity as quantity;

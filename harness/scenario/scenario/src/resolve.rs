@@ -4,8 +4,8 @@
 //! same draws.
 
 use super::model::{
-    AlignmentSpec, DocksideSpec, MOTIONS, Method, MotionSpec, ParameterDistribution, Scenario,
-    case_attitude,
+    AlignmentSpec, DocksideSpec, MOTIONS, Method, MotionSpan, MotionSpec, ParameterDistribution,
+    Scenario, case_attitude,
 };
 use octant_calibration::config as core;
 use octant_earth::{UnitQuaternion, Vector3, rotation};
@@ -17,6 +17,9 @@ use octant_sample::further::FURTHER_COUNT;
 use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 #[cfg(doc)]
 use octant_sample::parameters::ParameterGroup;
+
+/// End of a motion that goes on in a run without an end, s.
+const MOTION_ENDS_S: f64 = 1e12;
 
 /// Source of random values. No value depends on whether another one was drawn.
 pub trait Drawing {
@@ -181,7 +184,7 @@ impl Scenario {
         plant::PlantConfig {
             sample_period_ns: self.sample_period_ns,
             seed,
-            calibration_samples: self.calibration_samples(),
+            calibration_samples: self.reference_samples(),
             site: plant::PlantSite { gravity, ..self.site },
             motion: self.plant_motion(draws),
             turntable,
@@ -225,7 +228,24 @@ impl Scenario {
             sway,
             heave,
             mooring_offset_m,
+            times: ship.span.map_or_else(plant::MotionTimes::default, |span| self.times(&span)),
         })
+    }
+
+    /// Times at which the case moves: in each run-up of a heading test, or once.
+    fn times(&self, span: &MotionSpan) -> plant::MotionTimes {
+        let run_up_s =
+            self.run_up_samples().map(|samples| (samples * self.sample_period_ns) as f64 * 1e-9);
+        let (from_s, to_s) = span.from_to_s();
+        // A motion that goes on ends after the run-up.
+        let to_s = to_s.or(run_up_s).unwrap_or(MOTION_ENDS_S);
+        let run_ups = self.heading_test.map_or(1, |test| test.run_ups);
+        let every_s = self.run_up_every_s().unwrap_or_default();
+        let during_s = (0..run_ups).map(|number| {
+            let began_s = f64::from(number) * every_s;
+            [began_s + from_s, began_s + to_s]
+        });
+        plant::MotionTimes { during_s: during_s.collect(), ramp_s: span.ramp_s }
     }
 
     /// Configuration of the core for one of the two methods; `None` if the scenario has no baseline.
@@ -264,7 +284,11 @@ impl Scenario {
                 duration_s: calibration.duration_s,
                 estimator: calibration.estimator,
             }),
-            navigation: self.navigation.clone(),
+            navigation: self.navigation.clone().map(|plan| match self.run_up_every_s() {
+                // Of several run-ups each ends by its power, not by itself.
+                Some(_) => core::NavigationPlan { duration_s: None, ..plan },
+                None => plan,
+            }),
             turntable: core::TurntableRates {
                 rate_radps: self.turntable.rate_radps,
                 acceleration_radps2: self.turntable.acceleration_radps2,

@@ -437,3 +437,78 @@ fn the_position_of_a_simulated_base_at_rest_is_known_and_that_of_others_to_a_met
     assert_eq!(position(&format!("{HEAD}[motion]\nkind = \"dockside\"\n")), 1.0);
     assert_eq!(position(&format!("{HEAD}prior.position = \"1 m\"\n")), 1.0);
 }
+
+/// A heading test at rest, with keys beside it.
+fn heading_test(test: &str, more: &str) -> String {
+    format!(
+        "schema = 1\n{more}[procedure.navigation]\nduration = \"6 h\"\nrotation = \"none\"\n[procedure.heading_test]\n\
+         test = \"{test}\"\n"
+    )
+}
+
+#[test]
+fn a_heading_test_needs_the_motion_that_it_is_about() {
+    let moving = "[motion]\nkind = \"dockside\"\n[motion.ship]\npreset = \"scorsby\"\n";
+    let between = format!("{moving}from = \"5 h\"\nduration = \"25 min\"\n");
+    let slow = "[imu]\nrate = \"50 Hz\"\n";
+    for (test, more) in [
+        ("settle", String::new()),
+        ("settle-in-motion", moving.to_owned()),
+        ("settle-in-motion", between.clone()),
+        ("scorsby", between.clone()),
+        ("dynamic", between.clone()),
+    ] {
+        let text = heading_test(test, &format!("{more}{slow}"));
+        assert!(problems_with(&text, &[]).is_empty(), "{test} {more}");
+    }
+    for (test, more, expected) in [
+        ("settle", moving.to_owned(), "it is a test at rest"),
+        ("settle-in-motion", String::new(), "the motion of the table"),
+        ("scorsby", String::new(), "the motion of the table"),
+        ("scorsby", moving.to_owned(), "motion.ship.from and motion.ship.duration"),
+        ("dynamic", moving.to_owned(), "the unit settles at rest before it"),
+        ("scorsby", between.replace("5 h", "5.9 h"), "a longer procedure.navigation.duration"),
+    ] {
+        let (_, path, message) = problem(&heading_test(test, &format!("{more}{slow}")));
+        assert_eq!(path, "procedure.heading_test.test");
+        assert_says(&message, &[expected]);
+    }
+}
+
+#[test]
+fn several_run_ups_are_those_of_a_simulated_unit() {
+    let text = heading_test("settle", "");
+    assert!(problems_with(&format!("{text}run_ups = 3\n"), &[]).is_empty());
+    let (_, path, message) = problem(&format!(
+        "{text}run_ups = 2\n[endpoint]\nuri = \"serial:/dev/ttyUSB0?baud=115200\"\n"
+    ));
+    assert_eq!(path, "procedure.heading_test.run_ups");
+    assert_says(&message, &["found 2, expected 1"]);
+    let (_, path, message) = problem(&format!("{text}off = \"1 h\"\n"));
+    assert_eq!(path, "procedure.heading_test.off");
+    assert_says(&message, &["without effect with run_ups = 1"]);
+    let still = heading_test("settle", "").replace("test = ", "run_ups = 1\ntest = ");
+    assert!(problems_with(&still, &[]).is_empty());
+}
+
+#[test]
+fn a_limit_with_sec_phi_is_one_of_a_heading() {
+    let with = |measure: &str| {
+        format!(
+            "{HEAD}[[requirements]]\nid = \"A\"\ntext = \"x\"\nmeasure = \"{measure}\"\nlimit = \"1 deg\"\n\
+             secant_latitude = true\n"
+        )
+    };
+    assert!(problems_with(&with("heading.repeatability_deg"), &[]).is_empty());
+    let (_, path, message) = problem(&with("navigation.heading_error_arcmin.max"));
+    assert_eq!(path, "requirements[0].secant_latitude");
+    assert_says(&message, &["has no factor sec φ", "heading.settle_point_error_deg"]);
+}
+
+#[test]
+fn a_ramp_without_a_beginning_or_an_end_is_refused() {
+    let text = format!("{HEAD}[motion]\nkind = \"dockside\"\n[motion.ship]\nramp = \"20 s\"\n");
+    let (_, path, message) = problem(&text);
+    assert_eq!(path, "motion.ship.ramp");
+    assert_says(&message, &["without effect"]);
+}

@@ -1,5 +1,6 @@
 //! Fields for Octant's keys of a requirement in other formats.
 
+use crate::measures::without_secant;
 use crate::requirement::{
     Check, EnsembleRequirement, Limit, Requirement, Verification, percent, probability,
 };
@@ -11,6 +12,8 @@ pub const MEASURE: &str = "MEASURE";
 pub const COMPARISON: &str = "COMPARISON";
 /// The limit.
 pub const LIMIT: &str = "LIMIT";
+/// `true`: the limit is multiplied by the secant of the site's latitude.
+pub const SECANT_LATITUDE: &str = "SECANT_LATITUDE";
 /// Required probability that a run passes.
 pub const PASS: &str = "PASS";
 /// Confidence with which it is shown.
@@ -26,17 +29,30 @@ pub const RATIONALE: &str = "RATIONALE";
 /// Fields that every format names in its own way.
 pub const OF_FORMATS: [&str; 4] = ["MID", "UID", "TITLE", "STATEMENT"];
 /// All fields, in the order of writing.
-pub const ALL: [&str; 9] =
-    [MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS, CLAUSE, RATIONALE];
+pub const ALL: [&str; 10] = [
+    MEASURE,
+    COMPARISON,
+    LIMIT,
+    SECANT_LATITUDE,
+    PASS,
+    CONFIDENCE,
+    VERIFICATION,
+    TESTS,
+    CLAUSE,
+    RATIONALE,
+];
 
 /// Fields of a requirement beside id, title and text, as names and values.
 pub fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String)> {
     let mut fields = Vec::new();
     match &requirement.verification {
-        Verification::Test(Check { measure, comparison, limit, ensemble }) => {
+        Verification::Test(Check { measure, comparison, limit, secant_latitude, ensemble }) => {
             fields.push((MEASURE, measure.clone()));
             fields.push((COMPARISON, comparison.sign().to_owned()));
             fields.push((LIMIT, limit.text()));
+            if *secant_latitude {
+                fields.push((SECANT_LATITUDE, true.to_string()));
+            }
             if let Some(ensemble) = ensemble {
                 fields.push((PASS, percent(ensemble.pass)));
                 fields.push((CONFIDENCE, percent(ensemble.confidence)));
@@ -100,14 +116,27 @@ pub fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
                 return Err((line, format!("{PASS} and {CONFIDENCE} say something only together")));
             }
         };
+        let secant_latitude = match of(SECANT_LATITUDE) {
+            None => false,
+            Some((line, flag)) => {
+                let found = flag.trim().to_ascii_lowercase().parse();
+                let refused = || format!("{SECANT_LATITUDE} is {flag:?}, expected true or false");
+                let flag = found.map_err(|_| (line, refused()))?;
+                if flag && let Some(message) = without_secant(measure) {
+                    return Err((line, format!("{SECANT_LATITUDE}: {message}")));
+                }
+                flag
+            }
+        };
         let check = Check {
             measure: measure.to_owned(),
             comparison,
             limit: Limit::of_text(limit.1)
                 .map_err(|error| (limit.0, format!("{LIMIT}: {error}")))?,
+            secant_latitude,
             ensemble,
         };
-        let mut used = vec![MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE];
+        let mut used = vec![MEASURE, COMPARISON, LIMIT, SECANT_LATITUDE, PASS, CONFIDENCE];
         // Beside a measure this field adds nothing.
         if of(VERIFICATION).is_some_and(|(_, how)| how.eq_ignore_ascii_case("test")) {
             used.push(VERIFICATION);

@@ -126,6 +126,8 @@ pub struct Check {
     pub comparison: Comparison,
     /// The limit.
     pub limit: Limit,
+    /// True if the limit is multiplied by the secant of the site's latitude.
+    pub secant_latitude: bool,
     /// Required probability for many runs; without it every run has to pass.
     pub ensemble: Option<EnsembleRequirement>,
 }

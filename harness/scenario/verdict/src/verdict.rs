@@ -126,4 +126,18 @@ pub struct LimitCheck {
     pub comparison: Comparison,
     /// The limit, in the unit of the measure.
     pub limit: f64,
+    /// True if the limit is multiplied by the secant of the site's latitude: `limit` is that at the equator.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub secant_latitude: bool,
+}
+
+/// True for a key that needn't be written.
+fn is_false(flag: &bool) -> bool {
+    !flag
+}
+
+/// Limit with the factor sec φ at a latitude, in its own unit.
+#[must_use]
+pub fn at_latitude(limit_at_equator: f64, latitude_deg: f64) -> f64 {
+    limit_at_equator / libm::cos(latitude_deg.to_radians())
 }

@@ -85,7 +85,7 @@ fn every_problem_is_told_with_its_place() {
             "r.toml:2:1: requirements.N-1.measure: missing: a requirement has a measure, or says how \
              else it is verified (verification = \"analysis\", \"inspection\" or \"open\", or the names of tests in tests)",
             "r.toml:5:1: requirements.N-1.mesure: unknown key, did you mean \"measure\"? known: id, \
-             title, text, measure, comparison, limit, pass, confidence, verification, tests, \
+             title, text, measure, comparison, limit, secant_latitude, pass, confidence, verification, tests, \
              clause, rationale, parents, section, under, kind, identifier, attributes, formatted",
             "r.toml:7:6: requirements.N-1.id: found \"N-1\" a second time, the first is in line 2; \
              expected unique ids",
@@ -266,4 +266,26 @@ fn a_percentage_is_the_decimal_that_is_written() {
     for text in ["95", "% 95", "0 %", "-1 %", "NaN %", ""] {
         assert!(probability(text).is_err(), "{text}");
     }
+}
+
+#[test]
+fn the_factor_sec_phi_belongs_to_errors_of_a_heading() {
+    let with = |measure: &str, flag: &str| {
+        format!("{HEAD}measure = \"{measure}\"\nlimit = \"1 deg\"\nsecant_latitude = {flag}\n")
+    };
+    let read = |text: &str| file::read(text, "r.toml", &Anything).unwrap();
+    for (flag, expected) in [("true", true), ("false", false)] {
+        let found = read(&with("|heading.settle_point_error_deg|", flag));
+        let check = found.requirements[0].check().unwrap();
+        assert_eq!(check.secant_latitude, expected);
+        // It comes back from the file that is written.
+        assert_eq!(read(&file::write(&found)), found);
+    }
+    let refused = problems(&with("navigation.heading_error_arcmin.max", "true"));
+    assert_eq!(refused.len(), 1, "{refused:?}");
+    for part in ["7:", "secant_latitude", "no factor sec φ", "heading.repeatability_deg"] {
+        assert!(refused[0].contains(part), "{part:?} is not in {refused:?}");
+    }
+    let no_flag = problems(&with("heading.repeatability_deg", "\"yes\""));
+    assert!(no_flag[0].contains("expected true or false"), "{no_flag:?}");
 }

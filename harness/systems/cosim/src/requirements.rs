@@ -106,7 +106,7 @@ impl Required {
     }
 
     fn result(&self, is_whole: bool) -> RequirementResult {
-        let LimitCheck { id, measure, comparison, limit } = self.check.clone();
+        let LimitCheck { id, measure, comparison, limit, secant_latitude: _ } = self.check.clone();
         let found = self.found.map(|value| if self.magnitude { value.abs() } else { value });
         let (value, reason) = match (self.nan_s, found) {
             (Some(nan_s), _) => (None, Some(format!("{measure}: it isn't a number at {nan_s} s"))),
@@ -128,6 +128,7 @@ impl Required {
             measure,
             comparison,
             limit,
+            at_equator: None,
             value,
             margin,
             uncertainty,
@@ -179,6 +180,7 @@ fn required(one: &SystemRequirement, signals: &[NamedSignal]) -> Result<Required
             measure: one.measure.clone(),
             comparison: one.comparison,
             limit,
+            secant_latitude: false,
         },
         place,
         value,

@@ -7,7 +7,7 @@ use octant_state::{State, StateError, StateFormat, Writer, check_count};
 /// Format of the state of a plant with its copies. Raise the version when the layout changes, or that of a plant; a
 /// test compares the layout with the stored one.
 pub const FORMAT: StateFormat =
-    StateFormat { magic: "OCTANTPC", version: 1, what: "the state of a plant with its copies" };
+    StateFormat { magic: "OCTANTPC", version: 2, what: "the state of a plant with its copies" };
 
 impl ComparedPlant {
     /// Appends everything that the plant needs to continue bit for bit after this step: the same

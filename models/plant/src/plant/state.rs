@@ -11,7 +11,7 @@ use octant_state::{State, StateError, StateFormat, StateReader, Writer, check_be
 /// Format of the state of a plant. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
 pub const FORMAT: StateFormat =
-    StateFormat { magic: "OCTANTPL", version: 5, what: "the state of a plant" };
+    StateFormat { magic: "OCTANTPL", version: 6, what: "the state of a plant" };
 
 impl Plant {
     /// Appends everything that the plant needs to continue bit for bit after this step: the same

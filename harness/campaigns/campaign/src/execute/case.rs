@@ -288,8 +288,9 @@ impl ResultClaim<'_> {
         for check in &planned.checks {
             let of_it = |result: &&RequirementResult| result.id == check.id;
             let same = |result: &&RequirementResult| {
-                (result.measure.as_str(), result.comparison, result.limit)
-                    == (check.measure.as_str(), check.comparison, check.limit)
+                let has_secant = result.at_equator.is_some();
+                (result.measure.as_str(), result.comparison, result.written_limit(), has_secant)
+                    == (&check.measure, check.comparison, check.limit, check.secant_latitude)
             };
             let mut found = self.checks.iter().filter(of_it).peekable();
             // A missing check is reported as not checked.
@@ -300,7 +301,7 @@ impl ResultClaim<'_> {
                     |comparison: Comparison, limit: f64| format!("{} {limit}", comparison.sign());
                 return wrong(
                     &format!("requirement {}", check.id),
-                    &format!("{} {}", first.measure, sign(first.comparison, first.limit)),
+                    &format!("{} {}", first.measure, sign(first.comparison, first.written_limit())),
                     &format!("{} {}", check.measure, sign(check.comparison, check.limit)),
                 );
             }

@@ -15,6 +15,7 @@ use octant_evidence::files;
 use octant_evidence::manifest::CampaignFacts;
 use octant_evidence::statements::FolderStatements;
 use octant_score::summary::Summary;
+use octant_score::verdict::RequirementResult;
 use octant_verdict::Comparison;
 use octant_verdict::verdict::LimitCheck;
 use serde_json::Value;
@@ -153,12 +154,19 @@ fn read(plan: &Plan, folder: &Path, stored: &CampaignResults, end: usize) -> Rea
 fn differing(case: &Case, limits: &[LimitCheck], summary: &Summary) -> Vec<String> {
     let mut told = Vec::new();
     for check in limits {
-        let words = |measure: &str, comparison: Comparison, limit: f64| {
-            format!("{measure} {} {limit}", comparison.sign())
+        let words = |measure: &str, comparison: Comparison, limit: f64, secant: bool| {
+            format!(
+                "{measure} {} {limit}{}",
+                comparison.sign(),
+                if secant { " × sec φ" } else { "" }
+            )
         };
-        let expected = words(&check.measure, check.comparison, check.limit);
+        let expected = words(&check.measure, check.comparison, check.limit, check.secant_latitude);
         let found = summary.requirements.iter().filter(|result| result.id == check.id);
-        let found: Vec<String> = found.map(|r| words(&r.measure, r.comparison, r.limit)).collect();
+        let of = |r: &RequirementResult| {
+            words(&r.measure, r.comparison, r.written_limit(), r.at_equator.is_some())
+        };
+        let found: Vec<String> = found.map(of).collect();
         if found.is_empty() {
             told.push(format!(
                 "case {}: it didn't check {}, which its scenario requires",

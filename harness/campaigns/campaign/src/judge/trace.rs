@@ -66,6 +66,7 @@ pub fn with_those_of_scenarios(plan: &Plan, of_file: &Requirements) -> Requireme
                 measure: own.map_or_else(String::new, |own| own.check.measure.clone()),
                 comparison: own.map_or(Comparison::AtMost, |own| own.check.comparison),
                 limit: Limit::Number(own.map_or(f64::NAN, |own| own.check.limit)),
+                secant_latitude: own.is_some_and(|own| own.check.secant_latitude),
                 ensemble: None,
             };
             let mut requirement = Requirement::new(id, text, Verification::Test(check));

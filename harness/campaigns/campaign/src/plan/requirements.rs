@@ -147,6 +147,7 @@ pub(crate) fn planned(requirements: &Requirements) -> Vec<Planned> {
                 comparison: check.comparison,
                 // The limit was checked when the file was read.
                 limit: number(&check.measure, &check.limit).unwrap_or(f64::NAN),
+                secant_latitude: check.secant_latitude,
             },
             ensemble: check.ensemble,
         })

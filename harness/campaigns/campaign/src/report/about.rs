@@ -41,6 +41,7 @@ pub(super) fn requirements(plan: &Plan) -> (Requirements, Vec<String>) {
                 measure: own.map_or_else(String::new, |own| own.check.measure.clone()),
                 comparison: own.map_or(Comparison::AtMost, |own| sign(own.check.comparison.sign())),
                 limit: Limit::Number(own.map_or(f64::NAN, |own| own.check.limit)),
+                secant_latitude: own.is_some_and(|own| own.check.secant_latitude),
                 ensemble: None,
             });
             let text = own.map_or("", |own| own.text.as_str());
@@ -63,6 +64,7 @@ fn planned(planned: &crate::plan::requirements::Planned) -> Requirement {
         measure: check.measure.clone(),
         comparison: sign(check.comparison.sign()),
         limit: Limit::Number(check.limit),
+        secant_latitude: check.secant_latitude,
         ensemble: planned.ensemble,
     });
     Requirement::new(&check.id, "", verification)

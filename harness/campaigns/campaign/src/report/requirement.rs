@@ -30,6 +30,9 @@ pub struct RequirementFigures {
     pub comparison: Option<&'static str>,
     /// The limit, in the unit of the measure.
     pub limit: Option<f64>,
+    /// True if the limit is multiplied by the secant of the latitude of each case.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub secant_latitude: bool,
     /// Overall verdict.
     pub verdict: Verdict,
     /// Reason.
@@ -164,13 +167,18 @@ fn one(
     };
     let planned = plan.requirements.iter().find(|planned| planned.check.id == id);
     let first: Option<RequirementResult> = results().next().map(|(_, result)| result);
+    let secant_latitude = match (planned, &first) {
+        (Some(planned), _) => planned.check.secant_latitude,
+        (None, first) => first.as_ref().is_some_and(|result| result.at_equator.is_some()),
+    };
     let (measure, comparison, limit) = match (planned, first) {
         (Some(planned), _) => {
             let check = &planned.check;
             (Some(check.measure.clone()), Some(check.comparison.sign()), Some(check.limit))
         }
         (None, Some(result)) => {
-            (Some(result.measure), Some(result.comparison.sign()), Some(result.limit))
+            let limit = result.written_limit();
+            (Some(result.measure), Some(result.comparison.sign()), Some(limit))
         }
         (None, None) => (None, None, None),
     };
@@ -192,6 +200,7 @@ fn one(
         measure,
         comparison,
         limit,
+        secant_latitude,
         verdict: status.verdict,
         reason: status.reason.clone(),
         counts: all.counts,

@@ -55,12 +55,12 @@ fn place_of(verdict: Verdict) -> u8 {
 
 fn check(check: &RequirementResult, to: &mut Vec<u8>) {
     let RequirementResult { id, measure, comparison, limit, value, margin, .. } = check;
-    let RequirementResult { uncertainty, verdict, reason, .. } = check;
+    let RequirementResult { at_equator, uncertainty, verdict, reason, .. } = check;
     text(id, to);
     text(measure, to);
     text(comparison.sign(), to);
     number(*limit, to);
-    for value in [value, margin, uncertainty] {
+    for value in [at_equator, value, margin, uncertainty] {
         option(*value, to, number);
     }
     to.push(place_of(*verdict));
@@ -173,6 +173,7 @@ impl Rest<'_> {
             measure: self.text()?,
             comparison: Comparison::of_sign(&self.text()?)?,
             limit: self.number()?,
+            at_equator: self.option(Self::number)?,
             value: self.option(Self::number)?,
             margin: self.option(Self::number)?,
             uncertainty: self.option(Self::number)?,

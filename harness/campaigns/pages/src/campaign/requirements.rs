@@ -81,6 +81,7 @@ fn table(report: &CampaignReport<'_>, all: &[RequirementFigures]) -> Markup {
                             span.mono { (measure) } " " (sign(r.comparison.unwrap_or(""))) " "
                             (r.limit.map_or_else(String::new, |limit| number::plain(unit.of(limit), 6)))
                             " " (unit.name)
+                            @if r.secant_latitude { " × sec φ" }
                         }
                         div.reason { (r.reason) }
                         @if r.asked.is_none() { @if let Some(claim) = &r.claim { div.reason { (claim) } } }

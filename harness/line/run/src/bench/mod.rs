@@ -179,8 +179,10 @@ impl<'a, S: Source, E: Endpoint> Bench<S, E, Records<'a>> {
         let mut observers = Observers::new(work);
         observers.trace = plan.trace.then(octant_score::trace::RunTrace::new);
         observers.charts = plan.drawn();
+        observers.read_headings_of(scenario);
         let mut bench =
             Self::of_parts(source, endpoint, faulted, Records::new(recorder, observers, control));
+        bench.steps.switch(scenario.power_cycles());
         let records = &mut bench.keeper;
         records.truth = knows.then_some(draws);
         records.attended = Attended::of(scenario, method, control);

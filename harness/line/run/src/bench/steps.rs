@@ -14,6 +14,7 @@ use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence, Passed};
 use octant_realtime::clock::MonotonicTime;
 use octant_sample::{GimbalCommand, Output};
+use octant_scenario::PowerCycle;
 use octant_source::{Epoch, Source};
 
 /// State of the loop between two steps.
@@ -25,6 +26,10 @@ pub(crate) struct Steps {
     /// Number of steps after which the loop ends before it asks the source.
     total: u64,
     number: u64,
+    /// Switching of the unit that the procedure has, from the last one to the next.
+    cycles: Vec<PowerCycle>,
+    /// Number of the step before which the unit is switched next.
+    next_switch: u64,
 }
 
 impl Steps {
@@ -36,7 +41,48 @@ impl Steps {
             powered: true,
             total: total.unwrap_or(u64::MAX),
             number: 0,
+            cycles: Vec::new(),
+            next_switch: u64::MAX,
         }
+    }
+
+    /// Sets when the procedure switches the unit off and on, in the order of time.
+    pub(crate) fn switch(&mut self, mut cycles: Vec<PowerCycle>) {
+        cycles.reverse();
+        self.next_switch = cycles.last().map_or(u64::MAX, |cycle| cycle.off_before);
+        self.cycles = cycles;
+    }
+
+    /// Switches the unit before a step of this number, as far as the procedure has it there.
+    #[cold]
+    fn switched<S, E, K>(&mut self, endpoint: &mut E, keeper: &mut K) -> Result<(), RunError>
+    where
+        S: Source + ?Sized,
+        E: Endpoint + ?Sized,
+        K: Keeps<S, E>,
+    {
+        let number = self.number;
+        let mut happen = |event: UnitEvent| -> Result<(), RunError> {
+            if let Some(event) = unit::happen(&event, number, endpoint)? {
+                keeper.unit(&event, number);
+            }
+            Ok(())
+        };
+        let Some(PowerCycle { off_before, on_before }) = self.cycles.last().copied() else {
+            return Ok(());
+        };
+        if number == off_before {
+            happen(UnitEvent::PowerOff)?;
+            self.powered = false;
+            self.next_switch = on_before;
+        }
+        if number == on_before {
+            happen(UnitEvent::PowerOn)?;
+            self.powered = true;
+            self.cycles.pop();
+            self.next_switch = self.cycles.last().map_or(u64::MAX, |cycle| cycle.off_before);
+        }
+        Ok(())
     }
 
     /// Sets the number of steps after which the loop ends.
@@ -95,7 +141,7 @@ impl Steps {
         E: Endpoint + ?Sized,
         K: Keeps<S, E>,
     {
-        let Self { epoch, output, powered, total, number } = self;
+        let Self { output, total, number, .. } = self;
         // No fault sets in after the last sample, and no frame begins.
         if number == total {
             return keeper.drain(endpoint, output).map(Some);
@@ -104,6 +150,10 @@ impl Steps {
             return Ok(Some(Ended::Cancelled));
         }
         *number += 1;
+        if *number == self.next_switch {
+            self.switched(endpoint, keeper)?;
+        }
+        let Self { epoch, output, powered, number, .. } = self;
         // The turntable keeps the command of the last output while the core gives no answer.
         let mut command = output.gimbal_command;
         faults.before(*number, &mut command, output, source, endpoint);

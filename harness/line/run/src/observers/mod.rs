@@ -2,7 +2,7 @@
 //!
 //! Each observer has one subject: [`answers`] the rules of the unit, [`done`] the work completed, [`moments`] the
 //! solution at the ends of alignment and calibration, [`drift`] the navigation against the truth, [`convergence`] the
-//! parameters, [`measurements`] health and NIS, [`gimbals`] their angles; [`at_rest`] the noise of the sensors and
+//! parameters, [`measurements`] health and NIS, [`gimbals`] their angles, [`heading`] the readings of a heading test; [`at_rest`] the noise of the sensors and
 //! [`filtered`] the σ of a filter, which only a report shows. [`Observers`] gives each of them what it needs, once.
 //!
 //! The same observers see a live run and a recording afterwards ([`Observers::answer`], then
@@ -17,6 +17,7 @@ pub mod drift;
 pub mod filtered;
 pub mod follow;
 pub mod gimbals;
+pub mod heading;
 pub mod measurements;
 pub mod moments;
 mod solution;
@@ -29,6 +30,7 @@ use self::done::{Done, PlannedWork};
 use self::drift::NavigationDrift;
 use self::filtered::FilteredSeries;
 use self::gimbals::GimbalSeries;
+use self::heading::HeadingReadings;
 use self::measurements::Measurements;
 use self::moments::{Moment, Moments};
 use self::solution::{attitude_error, errors, velocity_error};
@@ -66,6 +68,8 @@ pub struct Observers {
     pub measurements: Measurements,
     /// Gimbal angles.
     pub gimbals: GimbalSeries,
+    /// Readings of a heading test, where there is one.
+    pub heading: Option<Box<HeadingReadings>>,
     /// Trace for the comparison with a twin, where there is one.
     pub trace: Option<RunTrace>,
     /// Series for a report alone.
@@ -133,8 +137,17 @@ impl Observers {
             convergence: Convergence::over(calibration_s),
             measurements: Measurements::new(),
             gimbals: GimbalSeries::default(),
+            heading: None,
             trace: None,
             charts: Charts::default(),
+        }
+    }
+
+    /// Reads the headings of a scenario's heading test, if it has one.
+    pub fn read_headings_of(&mut self, scenario: &octant_scenario::Scenario) {
+        self.heading = HeadingReadings::of(scenario);
+        if let Some(heading) = &self.heading {
+            self.now.score_period_ns = self.now.score_period_ns.min(heading.period_ns());
         }
     }
 
@@ -169,6 +182,10 @@ impl Observers {
     pub fn restarted(&mut self) {
         self.answers.restarted();
         self.done.restarted();
+        if let Some(heading) = &mut self.heading {
+            let last_ns = self.now.source.map_or(self.now.last_ns, |time| time.ns);
+            heading.switched_on(last_ns);
+        }
     }
 
     /// Takes the answer to an epoch as it reached the unit; returns true if truth at it is needed.
@@ -253,6 +270,10 @@ impl Observers {
 
     /// Takes the truth of the last epoch.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
+        if let Some(heading) = &mut self.heading {
+            let now_ns = self.now.source.unwrap_or(output.device_time).ns;
+            heading.read(self.tells, now_ns, output, truth);
+        }
         self.moments.truth(output, truth);
         let attitude_error = attitude_error(self.tells, output, truth);
         let velocity_error_mps = velocity_error(self.tells, output, truth);

@@ -5,7 +5,7 @@ use super::difference::difference;
 use super::findings::findings;
 use super::method::MethodRun;
 use super::refusal::{RefusedRun, explained};
-use super::scores_text::{alignment_line, navigation_lines, solution_line};
+use super::scores_text::{alignment_line, heading_lines, navigation_lines, solution_line};
 use crate::observers::at_rest::instrument_noise;
 use octant_base::display::DisplayUnits;
 use octant_base::number;
@@ -176,6 +176,7 @@ pub fn assemble_with(
         alignment: primary.alignment,
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
+        heading: primary.observed.heading.as_ref().map(|readings| readings.score()),
         baseline: baseline.map(|run| BaselineMethod {
             planned: Some(run.observed.done.planned()),
             done: Some(run.observed.done.work()),
@@ -197,14 +198,20 @@ pub fn assemble_with(
     };
     explain_refusals(&mut summary, scenario);
     let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
+    let heading = summary.heading.clone();
     judge_by(&mut summary, &requirements, &findings, |measure| {
+        let of_resolution = heading
+            .as_ref()
+            .map_or(0.0, |heading| heading.resolution_error(measure.trim_matches('|')));
         if scenario.decision.rule() == DecisionRule::SimpleAcceptance {
             return Ok(0.0);
         }
         let stated = scenario.decision.uncertainty(measure, &against);
         let of_file = compared.as_ref().and_then(|compared| band(compared, measure, scenario));
         match (stated, of_file) {
-            (Ok(stated), of_file) => Ok(of_file.map_or(stated, |of_file| stated.max(of_file))),
+            (Ok(stated), of_file) => {
+                Ok(of_file.map_or(stated, |of_file| stated.max(of_file)) + of_resolution)
+            }
             (Err(_), Some(of_file)) => Ok(of_file),
             (unknown, None) => unknown,
         }
@@ -414,6 +421,7 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
             navigation_lines(n, units).into_iter().for_each(&mut line);
         }
     }
+    summary.heading.iter().flat_map(heading_lines).for_each(&mut line);
     let differences = std::iter::once((&summary.method, &summary.counterfactual))
         .chain(summary.baseline.iter().map(|b| (&b.label, &b.counterfactual)));
     for (label, difference) in differences {

@@ -3,7 +3,8 @@
 use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_score::summary::{
-    AlignmentResult, ErrorScore, NavigationScore, PointScore, SolutionScore,
+    AlignmentResult, ErrorScore, HeadingScore, NavigationScore, PointScore, RunUpScore,
+    SolutionScore,
 };
 
 /// Renders an alignment on one line: reference, duration, attitude, and the scores of the attitude.
@@ -48,6 +49,49 @@ fn attitude_scores(solution: &SolutionScore, units: &DisplayUnits) -> Option<Str
         (None, Some(sigma)) => Some(format!("σ {sigma} {name}")),
         (None, None) => None,
     }
+}
+
+/// Renders a heading test, one line for each run-up.
+#[must_use]
+pub(super) fn heading_lines(heading: &HeadingScore) -> Vec<String> {
+    let latitude = number::plain(heading.latitude_deg, 4);
+    let mut lines =
+        vec![format!("  heading test {}, latitude {latitude} deg", heading.test.name())];
+    for (number, run_up) in heading.run_ups.iter().enumerate() {
+        lines.push(format!("    run-up {}: {}", number + 1, run_up_text(run_up)));
+    }
+    if let Some(repeated) =
+        heading.in_motion.map_or(heading.repeatability_deg, |of| of.repeatability_deg)
+    {
+        lines.push(format!("    repeatability {repeated:.4} deg"));
+    }
+    lines
+}
+
+/// Text of one run-up of a heading test.
+fn run_up_text(run_up: &RunUpScore) -> String {
+    let mut parts = vec![match run_up.settling_time_min {
+        Some(time_min) if run_up.settled => {
+            format!("settled after {} min", number::plain(time_min, 4))
+        }
+        Some(time_min) => format!("not settled before {} min", number::plain(time_min, 4)),
+        None => "settling time unknown".to_owned(),
+    }];
+    for (name, point) in
+        [("settle point", run_up.settle_point), ("after the motion", run_up.after_motion)]
+    {
+        let Some(point) = point else { continue };
+        let error = point.error_deg.map_or(String::new(), |error| format!(", error {error:+.4}"));
+        let (heading, rms) = (point.heading_deg, point.readings_rms_deg);
+        parts.push(format!("{name} {heading:.4}{error}, rms {rms:.4} deg"));
+    }
+    parts.extend(run_up.scorsby_error_deg.map(|error| format!("after the motion {error:+.4} deg")));
+    if let Some(amplitude) = run_up.dynamic_amplitude_deg {
+        let at = run_up.dynamic_frequency_hz.filter(|hz| *hz > 0.0);
+        let at = at.map_or(String::new(), |hz| format!(" at {hz:.4} Hz"));
+        parts.push(format!("up to {amplitude:.4} deg in the motion{at}"));
+    }
+    parts.join("; ")
 }
 
 /// Renders the scores of a navigation, one line each for latitude, longitude, radial error, attitude and

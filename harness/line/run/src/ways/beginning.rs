@@ -37,6 +37,8 @@ pub(super) fn beginning(plan: &Plan<'_>) -> Option<(Beginning, DrawnValues)> {
         && matches!(scenario.endpoint, EndpointSpec::InProcess)
         && !scenario.realtime.by_clock
         && scenario.operator.is_empty()
+        // Readings and power cycles of a heading test belong to one run.
+        && scenario.heading_test.is_none()
         && !scenario.faults.iter().any(|fault| elsewhere(fault.spec.kind.acts));
     if !divisible {
         return None;

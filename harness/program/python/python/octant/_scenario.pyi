@@ -1244,8 +1244,15 @@ class MotionShipSpectrum(Section):
 
 class MotionShip(Section):
     """Motion of the moored ship about the mean attitude and position. Takes a table with preset, roll, pitch,
-    yaw, surge, sway, heave, spectrum, mooring_offset. Default: dockside: the default sway; static: none."""
+    yaw, surge, sway, heave, spectrum, mooring_offset, from, duration, ramp. Default: dockside: the default
+    sway; static: none."""
 
+    duration: str
+    """How long it has its full amplitude; after it the case returns to rest. Takes a time such as "12 h". Left
+    out: to the end."""
+    from: str
+    """When the motion begins, since the unit was switched on: before it the case is at rest. Takes a time such
+    as "12 h". Left out: from the start, without a ramp."""
     heave: Sequence[Mapping[str, Any]]
     """Vertical motion, positive down. Takes an array of tables with amplitude, period, phase. Left out: as in
     the preset."""
@@ -1254,9 +1261,13 @@ class MotionShip(Section):
     such as "0.15 m". Default: ["0 m", "0 m", "0 m"]."""
     pitch: Sequence[Mapping[str, Any]]
     """Pitch of the ship. Takes an array of tables with amplitude, period, phase. Left out: as in the preset."""
-    preset: Literal["default", "severe", "calm"]
+    preset: Literal["default", "severe", "scorsby", "scorsby-settling", "calm"]
     """Ready-made motion; components that are given replace those of the preset. Takes one of "default",
-    "severe", "calm". Default: "default", or "calm" when components or a spectrum are given."""
+    "severe", "scorsby", "scorsby-settling", "calm". Default: "default", or "calm" when components or a
+    spectrum are given."""
+    ramp: str
+    """How long it grows, before that time, and dies away, after it; with from or duration. Takes a time such as
+    "12 h". Default: "10 s"."""
     roll: Sequence[Mapping[str, Any]]
     """Roll of the ship: a sum of sinusoids. Takes an array of tables with amplitude, period, phase. Left out: as
     in the preset."""
@@ -1290,8 +1301,8 @@ class Motion(Section):
     @property
     def ship(self) -> MotionShip:
         """Motion of the moored ship about the mean attitude and position. Takes a table with preset, roll,
-        pitch, yaw, surge, sway, heave, spectrum, mooring_offset. Default: dockside: the default sway; static:
-        none."""
+        pitch, yaw, surge, sway, heave, spectrum, mooring_offset, from, duration, ramp. Default: dockside: the
+        default sway; static: none."""
     @ship.setter
     def ship(self, value: MotionShip | Mapping[str, Any]) -> None: ...
 
@@ -1804,6 +1815,22 @@ class ProcedureCalibration(Section):
     """A sequence of one's own. Takes an array of tables with azimuth, roll, weight. Left out: positions are
     used."""
 
+class ProcedureHeadingTest(Section):
+    """A test of the heading as type tests of marine instruments have it, over one run-up or several. Takes a
+    table with test, run_ups, off, resolution. Left out: the heading isn't tested."""
+
+    off: str
+    """How long the unit is without power between two run-ups. Takes a time such as "12 h". Default: "12 h"."""
+    resolution: str
+    """Resolution of the headings that are read: they are rounded to it, and it counts as uncertainty. 0: exact.
+    Takes an angle such as "30.5 deg". Default: "0 deg"."""
+    run_ups: int
+    """How often the unit is switched on: each run-up aligns, calibrates and navigates, and is measured. Takes a
+    whole number from 1 to 20. Default: 1."""
+    test: Literal["settle", "settle-in-motion", "scorsby", "dynamic"]
+    """What is tested. The table's motion is that of motion.ship. Takes one of "settle", "settle-in-motion",
+    "scorsby", "dynamic"."""
+
 class ProcedureInitialParameters(Section):
     """Parameters that the core starts from, of an earlier calibration. Takes a table with table, gyro_bias,
     gyro_scale, gyro_misalignment, g_dependent, accel_bias, accel_scale, accel_misalignment. Left out: zero."""
@@ -1841,7 +1868,7 @@ class ProcedureNavigation(Section):
 
 class Procedure(Section):
     """What the core does: align, calibrate, navigate. Takes a table with alignment, calibration, navigation,
-    initial_parameters."""
+    heading_test, initial_parameters."""
 
     @property
     def alignment(self) -> ProcedureAlignment:
@@ -1856,6 +1883,12 @@ class Procedure(Section):
         refuse_above_sigma, further, prior, aiding, least_squares. Left out: no calibration: navigate at once."""
     @calibration.setter
     def calibration(self, value: ProcedureCalibration | Mapping[str, Any]) -> None: ...
+    @property
+    def heading_test(self) -> ProcedureHeadingTest:
+        """A test of the heading as type tests of marine instruments have it, over one run-up or several. Takes a
+        table with test, run_ups, off, resolution. Left out: the heading isn't tested."""
+    @heading_test.setter
+    def heading_test(self, value: ProcedureHeadingTest | Mapping[str, Any]) -> None: ...
     @property
     def initial_parameters(self) -> ProcedureInitialParameters:
         """Parameters that the core starts from, of an earlier calibration. Takes a table with table, gyro_bias,
@@ -2991,7 +3024,7 @@ class Scenario(Section):
     @property
     def procedure(self) -> Procedure:
         """What the core does: align, calibrate, navigate. Takes a table with alignment, calibration, navigation,
-        initial_parameters."""
+        heading_test, initial_parameters."""
     @procedure.setter
     def procedure(self, value: Procedure | Mapping[str, Any]) -> None: ...
     @property
@@ -3007,7 +3040,7 @@ class Scenario(Section):
     def record(self, value: Record | Mapping[str, Any]) -> None: ...
     requirements: Sequence[Mapping[str, Any]]
     """Limits that the results have to keep. Takes an array of tables with id, text, measure, limit, comparison,
-    clause. Left out: no requirement is checked."""
+    secant_latitude, clause. Left out: no requirement is checked."""
     @property
     def screening(self) -> Screening:
         """Screens and gates of the core. Takes a table with gate, stuck_samples, jumps, bridging, gimbals,

@@ -78,7 +78,13 @@ pub(crate) fn summary() -> Summary {
 }
 
 pub(crate) fn requirement(measure: &str, comparison: Comparison, limit: f64) -> LimitCheck {
-    LimitCheck { id: "NAV-1".to_owned(), measure: measure.to_owned(), comparison, limit }
+    LimitCheck {
+        id: "NAV-1".to_owned(),
+        measure: measure.to_owned(),
+        comparison,
+        limit,
+        secant_latitude: false,
+    }
 }
 
 pub(crate) fn judged(requirements: &[LimitCheck], findings: &[Finding]) -> Summary {

@@ -270,6 +270,7 @@ impl<'a> Assembly<'a> {
             (fields::MEASURE, RequirementPart::Measure),
             (fields::COMPARISON, RequirementPart::Comparison),
             (fields::LIMIT, RequirementPart::Limit),
+            (fields::SECANT_LATITUDE, RequirementPart::SecantLatitude),
             (fields::PASS, RequirementPart::Pass),
             (fields::CONFIDENCE, RequirementPart::Confidence),
             (fields::VERIFICATION, RequirementPart::Verification),

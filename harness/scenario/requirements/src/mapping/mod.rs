@@ -29,6 +29,8 @@ pub enum RequirementPart {
     Comparison,
     /// Limit.
     Limit,
+    /// Whether the limit has the factor sec φ.
+    SecantLatitude,
     /// Required probability.
     Pass,
     /// Confidence with which it is shown.
@@ -45,7 +47,7 @@ pub enum RequirementPart {
 
 impl RequirementPart {
     /// All parts.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Id,
         Self::Text,
         Self::Title,
@@ -53,6 +55,7 @@ impl RequirementPart {
         Self::Measure,
         Self::Comparison,
         Self::Limit,
+        Self::SecantLatitude,
         Self::Pass,
         Self::Confidence,
         Self::Verification,
@@ -72,6 +75,7 @@ impl RequirementPart {
             Self::Measure => "measure",
             Self::Comparison => "comparison",
             Self::Limit => "limit",
+            Self::SecantLatitude => "secant_latitude",
             Self::Pass => "pass",
             Self::Confidence => "confidence",
             Self::Verification => "verification",
@@ -110,6 +114,7 @@ impl RequirementPart {
             Self::Measure => &[fields::MEASURE],
             Self::Comparison => &[fields::COMPARISON],
             Self::Limit => &[fields::LIMIT],
+            Self::SecantLatitude => &[fields::SECANT_LATITUDE],
             Self::Pass => &[fields::PASS],
             Self::Confidence => &[fields::CONFIDENCE],
             Self::Verification => &[fields::VERIFICATION],

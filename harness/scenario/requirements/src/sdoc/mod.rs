@@ -1,7 +1,7 @@
 //! Documents of StrictDoc, `.sdoc`: read and written in the form of its version 0.30.
 //!
 //! A node's UID, TITLE, STATEMENT, RATIONALE and MID correspond to keys of a requirement; measure,
-//! limit and the rest are fields MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS and
+//! limit and the rest are fields MEASURE, COMPARISON, LIMIT, SECANT_LATITUDE, PASS, CONFIDENCE, VERIFICATION, TESTS and
 //! CLAUSE, declared in the document's grammar. Every other field is an attribute, and is written
 //! unchanged.
 //!

@@ -8,6 +8,7 @@ use super::table::{
     tables, text, time, within,
 };
 use crate::error::Problem;
+use crate::model::HeadingTestKind;
 use crate::quantity::UnitDimension;
 use crate::read::reader::Reader;
 use octant_calibration::config::{ErrorModel, GyroReference, SwayNoise};
@@ -42,8 +43,34 @@ keys! {
         navigation: Option<NavigationKeys>
             = table::<NavigationKeys>(), absent("no navigation: the run ends with the calibration"),
             "Free inertial navigation with the compensated sensors, height held.";
+        heading_test: At<Option<HeadingTestKeys>>
+            = table::<HeadingTestKeys>(), absent("the heading isn't tested"),
+            "A test of the heading as type tests of marine instruments have it, over one run-up or several.";
         initial_parameters: Option<InitialKeys> = table::<InitialKeys>(), absent("zero"),
             "Parameters that the core starts from, of an earlier calibration.";
+    }
+}
+
+keys! {
+    /// `[procedure.heading_test]`.
+    pub(crate) struct HeadingTestKeys {
+        test: At<HeadingTestKind> = choice! {
+                "settle" => HeadingTestKind::Settle, "settling time and settle point at rest";
+                "settle-in-motion" => HeadingTestKind::SettleInMotion,
+                    "settling time and settle point while the table moves, and settle point after it stopped";
+                "scorsby" => HeadingTestKind::Scorsby,
+                    "settle point at rest, then a motion of the table, then the heading after it stopped";
+                "dynamic" => HeadingTestKind::Dynamic,
+                    "settle point at rest, then the error while the table moves";
+            }, required,
+            "What is tested. The table's motion is that of motion.ship.";
+        run_ups: At<u32> = integer::<u32>(1, 20), "1",
+            "How often the unit is switched on: each run-up aligns, calibrates and navigates, and is measured.";
+        off: f64 = time(0.0, 366.0 * 86400.0, "from 0 s to 366 day"), "12 h",
+            "How long the unit is without power between two run-ups.";
+        resolution: f64
+            = within(&[UnitDimension::ANGLE], 0.0, DEG, "from 0 to 1 deg"), "0 deg",
+            "Resolution of the headings that are read: they are rounded to it, and it counts as uncertainty. 0: exact.";
     }
 }
 

@@ -26,8 +26,8 @@ pub(crate) mod table;
 mod trajectory;
 
 pub(crate) use calibration::{
-    AidingKeys, AlignmentKeys, AlignmentMethod, CalibrationKeys, EstimatorName, InitialKeys,
-    Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation,
+    AidingKeys, AlignmentKeys, AlignmentMethod, CalibrationKeys, EstimatorName, HeadingTestKeys,
+    InitialKeys, Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation,
     SigmaLimitKeys, StopKeys,
 };
 pub use campaign::Design;

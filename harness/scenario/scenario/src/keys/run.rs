@@ -163,6 +163,12 @@ const DEFAULT_SWAY: Preset =
 const SEVERE_SWAY: Preset =
     Some([(5.0, 10.0), (5.0, 8.0), (1.0, 12.0), (0.25, 8.5), (0.25, 8.0), (0.3, 8.0)]);
 
+/// Motions of a Scorsby table: draft of ISO 22090-1 (about 2000), 6.6 and 6.5. It turns about its centre.
+const SCORSBY: Preset =
+    Some([(20.0, 6.0), (10.0, 10.0), (5.0, 15.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)]);
+const SCORSBY_SETTLING: Preset =
+    Some([(5.0, 15.0), (5.0, 6.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)]);
+
 keys! {
     /// `[motion.ship]`.
     pub(crate) struct ShipKeys {
@@ -171,6 +177,10 @@ keys! {
                     "roll 3°/8 s, pitch 1.5°/6 s, yaw 1°/10 s; surge, sway, heave 0.2 m at 6, 7, 8 s";
                 "severe" => SEVERE_SWAY,
                     "roll 5°/10 s, pitch 5°/8 s, yaw 1°/12 s; surge and sway 0.25 m at 8.5 and 8 s, heave 0.3 m/8 s: horizontal acceleration up to 0.22 m/s², the dynamic condition of ISO 8728";
+                "scorsby" => SCORSBY,
+                    "a Scorsby table in its test: roll 20°/6 s, pitch 10°/10 s, yaw 5°/15 s";
+                "scorsby-settling" => SCORSBY_SETTLING,
+                    "a Scorsby table on which an instrument settles: roll 5°/15 s, pitch 5°/6 s";
                 "calm" => None, "no motion but the components listed";
             }, derived("\"default\", or \"calm\" when components or a spectrum are given"),
             "Ready-made motion; components that are given replace those of the preset.";
@@ -188,6 +198,14 @@ keys! {
             "Irregular sea: sinusoids of a Pierson-Moskowitz spectrum are added, with frequencies and phases drawn from the seed.";
         mooring_offset: [f64; 3] = si_array(UnitDimension::LENGTH), "[\"0 m\", \"0 m\", \"0 m\"]",
             "Constant offset from the dock's reference position: north, east, down.";
+        from: Option<f64> = time(0.0, 366.0 * 86400.0, "from 0 s to 366 day"),
+            absent("from the start, without a ramp"),
+            "When the motion begins, since the unit was switched on: before it the case is at rest.";
+        duration: Option<f64> = time(1e-3, 366.0 * 86400.0, "above 0, up to 366 day"),
+            absent("to the end"),
+            "How long it has its full amplitude; after it the case returns to rest.";
+        ramp: f64 = time(0.0, 3600.0, "from 0 s to 1 h"), "10 s",
+            "How long it grows, before that time, and dies away, after it; with from or duration.";
     }
 }
 
@@ -292,6 +310,8 @@ keys! {
                 ">" => Comparison::Above, "above the limit";
             }, "<=",
             "How the measure is compared with the limit.";
+        secant_latitude: At<bool> = boolean(), "false",
+            "Whether the limit is multiplied by the secant of the site's latitude, as errors of a gyrocompass are.";
         clause: Option<String> = text(), absent("none"),
             "Where the requirement comes from: document and clause.";
         #[expect(dead_code, reason = "it is always refused")]

@@ -4,6 +4,7 @@ mod drive;
 mod endpoint;
 mod file_name;
 mod fmu;
+mod heading;
 mod instrument;
 mod motion;
 mod port;
@@ -15,10 +16,11 @@ pub use drive::{Drive, TableDriver};
 pub use endpoint::{EndpointSpec, Live};
 pub use file_name::{FileName, FileNameError};
 pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
+pub use heading::{HeadingTestKind, HeadingTestSpec, PowerCycle};
 pub use instrument::{
     DescriptionChoice, Instrument, InstrumentLog, KnownStamps, Messages, Speaks, UnitPulses,
 };
-pub use motion::{DocksideSpec, MotionComponent, MotionSpec, ShipSpectrum};
+pub use motion::{DocksideSpec, MotionComponent, MotionSpan, MotionSpec, ShipSpectrum};
 pub(crate) use motion::{MOTIONS, case_attitude};
 pub use port::{ChannelElement, Code, EntryPlace, Made, Set, Setting};
 pub use procedure::{AlignmentSpec, CalibrationSpec, Method, NumberedStops};

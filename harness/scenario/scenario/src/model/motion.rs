@@ -38,6 +38,27 @@ pub struct DocksideSpec {
     pub spectrum: Option<ShipSpectrum>,
     /// Offset from the dock's reference, north, east, down, m.
     pub mooring_offset_m: [f64; 3],
+    /// Part of each run-up in which it moves; `None`: always.
+    pub span: Option<MotionSpan>,
+}
+
+/// Part of a run-up in which the case moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionSpan {
+    /// Time since switching on at which the motion begins to grow, s.
+    pub from_s: f64,
+    /// Time at full amplitude, s; `None`: to the end.
+    pub duration_s: Option<f64>,
+    /// Time over which the motion grows, and after its time dies away, s.
+    pub ramp_s: f64,
+}
+
+impl MotionSpan {
+    /// Beginning and end of the motion, s since switching on; `None` as the end: it goes on.
+    #[must_use]
+    pub fn from_to_s(&self) -> (f64, Option<f64>) {
+        (self.from_s, self.duration_s.map(|full_s| self.from_s + full_s + 2.0 * self.ramp_s))
+    }
 }
 
 /// One sinusoid.

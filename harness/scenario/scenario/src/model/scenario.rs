@@ -2,6 +2,7 @@
 
 use super::drive::Drive;
 use super::endpoint::EndpointSpec;
+use super::heading::{HeadingTestSpec, PowerCycle};
 use super::motion::MotionSpec;
 use super::procedure::{AlignmentSpec, CalibrationSpec, Method};
 use super::source::SourceSpec;
@@ -80,6 +81,8 @@ pub struct Scenario {
     pub aiding: plant::AidingSource,
     /// Navigation after the calibration, if there is one.
     pub navigation: Option<core::NavigationPlan>,
+    /// Heading test, if the run is one.
+    pub heading_test: Option<HeadingTestSpec>,
     /// Screens and gates.
     pub screening: core::Screening,
     /// Faults, in the order in which they act.
@@ -296,14 +299,50 @@ impl Scenario {
             / self.sample_period_ns
     }
 
-    /// Number of samples of the whole procedure; `None` if navigation lasts until the source ends.
+    /// Number of samples of the whole procedure, with all run-ups of a heading test; `None` if navigation lasts until
+    /// the source ends.
     #[must_use]
     pub fn samples(&self) -> Option<u64> {
+        let last = self.power_cycles().last().map_or(0, |cycle| cycle.on_before - 1);
+        Some(last + self.run_up_samples()?)
+    }
+
+    /// Number of samples from switching on to the end of the navigation; `None` if it lasts until the source ends.
+    #[must_use]
+    pub fn run_up_samples(&self) -> Option<u64> {
         let navigation_s = match &self.navigation {
             None => 0.0,
             Some(plan) => plan.duration_s?,
         };
         Some(self.calibration_samples() + self.samples_in(navigation_s))
+    }
+
+    /// Lists the times without power between the run-ups of a heading test.
+    #[must_use]
+    pub fn power_cycles(&self) -> Vec<PowerCycle> {
+        let (Some(test), Some(on)) = (&self.heading_test, self.run_up_samples()) else {
+            return Vec::new();
+        };
+        let off = self.samples_in(test.off_s);
+        let cycle = |number: u64| PowerCycle {
+            off_before: number * on + (number - 1) * off + 1,
+            on_before: number * (on + off) + 1,
+        };
+        (1..u64::from(test.run_ups)).map(cycle).collect()
+    }
+
+    /// Number of samples for which the source delivers references: those of the calibration, and through all of a test with
+    /// several run-ups, each of which calibrates.
+    pub(crate) fn reference_samples(&self) -> u64 {
+        let several = self.heading_test.is_some_and(|test| test.run_ups > 1);
+        let all = self.samples().filter(|_| several);
+        all.unwrap_or_else(|| self.calibration_samples())
+    }
+
+    /// Time from switching on to the next switching on, s, of a test with several run-ups; `None` for another run.
+    pub(crate) fn run_up_every_s(&self) -> Option<f64> {
+        let second = self.power_cycles().first()?.on_before - 1;
+        Some((second * self.sample_period_ns) as f64 * 1e-9)
     }
 
     /// Properties of a run that faults need.

@@ -3,7 +3,7 @@
 use crate::error::Problem;
 use crate::keys::{ExtensionsKeys, ImuKeys, MotionKeys, MotionKind, TurntableKeys};
 use crate::model::{
-    DocksideSpec, MotionComponent, MotionSpec, ParameterDistribution, ShipSpectrum,
+    DocksideSpec, MotionComponent, MotionSpan, MotionSpec, ParameterDistribution, ShipSpectrum,
 };
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
@@ -114,7 +114,8 @@ pub(super) fn motion(keys: &MotionKeys) -> MotionSpec {
         given(&ship.heave),
     ];
     if let Some(preset) = ship.preset {
-        for (index, (amplitude, period_s)) in preset.into_iter().enumerate() {
+        let moves = preset.into_iter().enumerate().filter(|(_, (amplitude, _))| *amplitude > 0.0);
+        for (index, (amplitude, period_s)) in moves {
             let amplitude = amplitude * if index < 3 { DEG } else { 1.0 };
             components[index].get_or_insert_with(|| {
                 vec![MotionComponent { amplitude, period_s, phase_rad: None }]
@@ -131,6 +132,11 @@ pub(super) fn motion(keys: &MotionKeys) -> MotionSpec {
         components: components.map(Option::unwrap_or_default),
         spectrum,
         mooring_offset_m: ship.mooring_offset,
+        span: (ship.from.is_some() || ship.duration.is_some()).then(|| MotionSpan {
+            from_s: ship.from.unwrap_or_default(),
+            duration_s: ship.duration,
+            ramp_s: ship.ramp,
+        }),
     })
 }
 

@@ -6,6 +6,7 @@ mod drive;
 pub mod faults;
 mod fmu;
 mod further;
+mod heading;
 mod instrument;
 mod instrument_port;
 mod power;
@@ -79,6 +80,7 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
         baseline,
         aiding: procedure.aiding,
         navigation: procedure.navigation,
+        heading_test: heading::spec(&keys.procedure.heading_test),
         screening: procedure::screening(&keys.screening),
         faults: Vec::new(),
         operator: Vec::new(),
@@ -101,6 +103,7 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
     let power = power::read(&keys, &scenario)?;
     let scenario = Scenario { reference, power, ..scenario };
     check_once(&keys, &scenario)?;
+    heading::check(&keys, &scenario)?;
     count_range::check(&keys.imu.rate, &scenario)?;
     further::check_endpoint(&keys.endpoint.uri, &scenario)?;
     further::check_limits(&keys.endpoint.uri, &scenario)?;

@@ -13,7 +13,9 @@ use octant_verdict::{measures, signed};
 
 pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Problem> {
     let mut all: Vec<RequirementSpec> = Vec::new();
-    for RequirementKeys { id, text, measure, limit, comparison, clause, .. } in keys {
+    for RequirementKeys { id, text, measure, limit, secant_latitude, comparison, clause, .. } in
+        keys
+    {
         if id.trim().is_empty() {
             return Err(id.problem("found an empty text, expected an identifier"));
         }
@@ -23,12 +25,16 @@ pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Pro
         }
         let bare = path_of(measure).map_err(|error| measure.problem(error.to_string()))?;
         let (limit, limit_text) = self::limit(limit, bare)?;
+        if **secant_latitude && let Some(message) = measures::without_secant(bare) {
+            return Err(secant_latitude.problem(message));
+        }
         all.push(RequirementSpec {
             check: LimitCheck {
                 id: id.to_string(),
                 measure: measure.to_string(),
                 comparison: *comparison,
                 limit,
+                secant_latitude: **secant_latitude,
             },
             text: text.clone(),
             limit_text,

@@ -3,6 +3,7 @@
 use super::{Checker, SCHEMA};
 use crate::error::RequirementsError;
 use crate::fields::{self, misnamed, own_fields};
+use crate::measures::without_secant;
 use crate::requirement::{
     AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
     Parent, Requirement, Requirements, Verification, probability,
@@ -15,13 +16,14 @@ use std::collections::HashMap;
 
 const ROOT: [&str; 6] = ["schema", "title", "document", "attributes", "requirements", "accounts"];
 const DEFINITION: [&str; 4] = ["name", "type", "options", "field"];
-const REQUIREMENT: [&str; 19] = [
+const REQUIREMENT: [&str; 20] = [
     "id",
     "title",
     "text",
     "measure",
     "comparison",
     "limit",
+    "secant_latitude",
     "pass",
     "confidence",
     "verification",
@@ -283,7 +285,7 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
     if table.has("verification") && how.is_none() {
         return None;
     }
-    let tested = ["measure", "comparison", "limit", "pass", "confidence"];
+    let tested = ["measure", "comparison", "limit", "secant_latitude", "pass", "confidence"];
     let elsewhere = match how.as_deref() {
         None | Some("test") => None,
         Some("open") => Some(Verification::Open),
@@ -335,6 +337,7 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
     {
         table.problem("limit", message);
     }
+    let secant_latitude = secant_latitude(table, measure.as_deref());
     let sign =
         if table.has("comparison") { table.optional("comparison") } else { Some("<=".into()) };
     let comparison = sign.and_then(|sign| {
@@ -349,8 +352,27 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
         measure: measure?,
         comparison: comparison?,
         limit: limit?,
+        secant_latitude,
         ensemble,
     }))
+}
+
+/// Reads whether the limit has the factor sec φ, which few measures take.
+fn secant_latitude(table: &Reader<'_>, measure: Option<&str>) -> bool {
+    let key = "secant_latitude";
+    match table.get(key).map(|node| (node, &node.value)) {
+        None => false,
+        Some((_, Value::Boolean(flag))) => {
+            if *flag && let Some(message) = measure.and_then(without_secant) {
+                table.problem(key, message);
+            }
+            *flag
+        }
+        Some((node, _)) => {
+            table.problem(key, format!("found {}, expected true or false", table.describe(node)));
+            false
+        }
+    }
 }
 
 fn limit(table: &Reader<'_>) -> Option<Limit> {

@@ -45,6 +45,9 @@ fn one(out: &mut String, requirement: &Requirement) {
                 Limit::Quantity(text) => entry(out, "limit", text),
                 Limit::Number(number) => _ = writeln!(out, "limit = {number:?}"),
             }
+            if check.secant_latitude {
+                out.push_str("secant_latitude = true\n");
+            }
             if let Some(ensemble) = &check.ensemble {
                 entry(out, "pass", &percent(ensemble.pass));
                 entry(out, "confidence", &percent(ensemble.confidence));

@@ -3,6 +3,7 @@
 //! `tree` declares each of them once, with unit, meaning, sign and conditions. Readers of requirements
 //! check paths and limits against it, and `octant requirements measures` lists it.
 
+mod heading;
 mod method;
 mod need;
 mod place;
@@ -139,6 +140,22 @@ pub fn is_in_sigma(path: &str) -> bool {
 #[must_use]
 pub fn is_signed(path: &str) -> bool {
     walk(path).is_ok_and(|found| found.number.signed)
+}
+
+/// Reason why a limit of a measure has no factor sec φ; `None`: it may have one.
+#[must_use]
+pub fn without_secant(measure: &str) -> Option<String> {
+    let bare = measure.trim_matches('|');
+    let takes = walk(bare).is_ok_and(|found| found.number.secant);
+    let of_heading = || all().into_iter().map(|entry| entry.measure);
+    (!takes).then(|| {
+        let those: Vec<String> =
+            of_heading().filter(|path| walk(path).is_ok_and(|found| found.number.secant)).collect();
+        format!(
+            "found true, and the limit of {bare} has no factor sec φ; those with one: {}",
+            those.join(", ")
+        )
+    })
 }
 
 /// Lists all measures, in the order of the summary.

@@ -11,6 +11,8 @@ pub enum MeasureNeed {
     Further,
     /// A navigation.
     Navigation,
+    /// A heading test.
+    Heading,
     /// Truth to compare with.
     Truth,
     /// σ that the unit states.
@@ -33,10 +35,11 @@ pub enum MeasureNeed {
 
 impl MeasureNeed {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Calibration,
         Self::Further,
         Self::Navigation,
+        Self::Heading,
         Self::Truth,
         Self::Sigma,
         Self::SchulerPeriod,
@@ -55,6 +58,7 @@ impl MeasureNeed {
             Self::Calibration => "calibration",
             Self::Further => "further",
             Self::Navigation => "navigation",
+            Self::Heading => "heading",
             Self::Truth => "truth",
             Self::Sigma => "sigma",
             Self::SchulerPeriod => "schuler-period",
@@ -76,6 +80,7 @@ impl MeasureNeed {
                 "errors beside the parameters in the filter: [procedure.calibration.further]"
             }
             Self::Navigation => "a navigation: [procedure.navigation]",
+            Self::Heading => "a heading test: [procedure.heading_test]",
             Self::Truth => "truth to compare with: a simulated source, or one that delivers truth",
             Self::Sigma => {
                 "a standard deviation that the unit states; of a solution a core in this process states it, \

@@ -30,6 +30,8 @@ pub(super) struct Number {
     pub(super) signed: bool,
     pub(super) meaning: &'static str,
     pub(super) needs: &'static [MeasureNeed],
+    /// True if its limit may have the factor sec φ: an error of a heading that is found from the Earth's rate.
+    pub(super) secant: bool,
 }
 
 /// Unit of a number.
@@ -64,12 +66,12 @@ pub(super) const G_DEPENDENT: Unit = Unit::Named("deg/h/g");
 
 /// A magnitude: it can't be negative.
 pub(super) const fn magnitude(unit: Unit, meaning: &'static str) -> Place {
-    Place::Number(Number { unit, signed: false, meaning, needs: &[] })
+    Place::Number(Number { unit, signed: false, meaning, needs: &[], secant: false })
 }
 
 /// A number that can be negative.
 pub(super) const fn signed(unit: Unit, meaning: &'static str) -> Place {
-    Place::Number(Number { unit, signed: true, meaning, needs: &[] })
+    Place::Number(Number { unit, signed: true, meaning, needs: &[], secant: false })
 }
 
 /// A count, or a ratio.
@@ -80,9 +82,15 @@ pub(super) const fn count(meaning: &'static str) -> Place {
 /// Number with conditions of its own.
 pub(super) const fn with(needs: &'static [MeasureNeed], place: Place) -> Place {
     match place {
-        Place::Number(Number { unit, signed, meaning, .. }) => {
-            Place::Number(Number { unit, signed, meaning, needs })
-        }
+        Place::Number(number) => Place::Number(Number { needs, ..number }),
+        other => other,
+    }
+}
+
+/// Number whose limit may have the factor sec φ.
+pub(super) const fn over_latitude(place: Place) -> Place {
+    match place {
+        Place::Number(number) => Place::Number(Number { secant: true, ..number }),
         other => other,
     }
 }

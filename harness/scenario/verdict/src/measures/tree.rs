@@ -1,5 +1,6 @@
 //! Tree of all measures: the summary, in its own order.
 
+use super::heading::HEADING;
 use super::method::{ALIGNMENT, CALIBRATION, NAVIGATION};
 use super::need::MeasureNeed::{
     Baseline, Calibration, Clock, DeviceClock, Navigation, Sigma, Truth, Twin,
@@ -17,6 +18,7 @@ pub(super) static SUMMARY: Place = table(
         ("alignment", ALIGNMENT),
         ("calibration", CALIBRATION),
         ("navigation", NAVIGATION),
+        ("heading", HEADING),
         ("counterfactual", COUNTERFACTUAL),
         (
             "baseline",

@@ -1,0 +1,24 @@
+//! Measures of marine heading type tests, as functions of readings of a heading over time.
+//!
+//! A [`Series`] is what was read of one run-up: the heading that the unit shows and the true heading, at
+//! times since the unit was switched on. Each measure takes readings at the times that the text of its
+//! standard names, never at the best moment:
+//!
+//! - [`settle`]: settling time, settle point, root mean square of its readings
+//! - [`repeatability`]: differences of the settle points of several run-ups
+//! - [`motion`]: error after a motion of the table, amplitude and frequency of the error in it
+//! - [`follow`]: error in turns by class of rate, error of transmission and resolution
+//! - [`score`]: all of them together, as in the summary of a run
+//!
+//! A reading that is due and isn't in the record, or a record that is too short, gives no value. Angles are
+//! in degrees, differences within ±180°, times in seconds.
+
+pub mod angle;
+pub mod follow;
+pub mod motion;
+mod reading;
+pub mod repeatability;
+pub mod score;
+pub mod settle;
+
+pub use reading::{Reading, Series};
