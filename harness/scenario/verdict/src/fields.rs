@@ -1,7 +1,7 @@
 //! Fields for Octant's keys of a requirement in other formats.
 
 use crate::requirement::{
-    Check, EnsembleRequirement, Limit, Requirement, Verification, percent, probability,
+    Check, EnsembleRequirement, Limit, Requirement, Verification, confidence, percent, probability,
 };
 use crate::verdict::Comparison;
 
@@ -88,10 +88,12 @@ pub fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
         };
         let part = |name: &'static str| match of(name) {
             None => Ok(None),
-            Some((line, text)) => match probability(text) {
-                Ok(probability) => Ok(Some(probability)),
-                Err(error) => Err((line, format!("{name}: {error}"))),
-            },
+            Some((line, text)) => {
+                match if name == CONFIDENCE { confidence(text) } else { probability(text) } {
+                    Ok(probability) => Ok(Some(probability)),
+                    Err(error) => Err((line, format!("{name}: {error}"))),
+                }
+            }
         };
         let ensemble = match (part(PASS)?, part(CONFIDENCE)?) {
             (Some(pass), Some(confidence)) => Some(EnsembleRequirement { pass, confidence }),
