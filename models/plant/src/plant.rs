@@ -304,6 +304,14 @@ impl Plant {
         }
     }
 
+    /// True if nothing moved in the last interval, neither case nor gimbals: the truth at its end is that
+    /// at its beginning.
+    #[must_use]
+    #[inline]
+    pub fn stands(&self) -> bool {
+        self.is_still
+    }
+
     /// Number of samples so far in which a count or a sensor's range saturated.
     #[must_use]
     pub fn saturated_samples(&self) -> u64 {

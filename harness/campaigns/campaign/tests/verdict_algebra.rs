@@ -10,7 +10,7 @@ use octant_campaign::execute::case::{self, CaseResult};
 use octant_campaign::judge::status;
 use octant_campaign::judge::trace;
 use octant_campaign::plan::requirements::Planned;
-use octant_campaign::plan::{self, Case, CaseLimits, Plan, PlannedScenario};
+use octant_campaign::plan::{self, Case, CaseLimits, Plan, PlannedScenario, StopRule};
 use octant_campaign::store::{self, StoreOutcome};
 use octant_realtime::schedule::{Granted, RequestOutcome};
 use octant_run::TimeKeeping;
@@ -21,6 +21,7 @@ use octant_score::summary::{
     BaselineMethod, CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel,
     LatenessQuantiles, NavigationScore, PacingRecord, RadialScore, Summary,
 };
+use octant_statistics::proportion::Demand;
 use octant_verdict::requirement::{
     self as required, Check, EnsembleRequirement, Limit, Requirements, Verification,
 };
@@ -460,6 +461,49 @@ proptest! {
         prop_assert!(with >= Verdict::Inconclusive);
         prop_assert!(with >= status.verdict());
     }
+}
+
+#[test]
+fn checks_that_come_to_nothing_show_nothing_broken_and_end_nothing() {
+    let without = Parts {
+        checks: vec![Found::NoMeasure],
+        findings: Vec::new(),
+        fired: Vec::new(),
+        refused: false,
+        baseline: None,
+    };
+    let required = EnsembleRequirement { pass: 0.95, confidence: 0.9 };
+    let folder = tempfile::tempdir().unwrap();
+    let (mut plan, _) =
+        campaign(folder.path(), &vec![Came::Ran(without.clone()); 40], Some(required));
+    let demand = Demand { pass: required.pass, confidence: required.confidence };
+    plan.stop = Some(StopRule { requirement: "NAV-1".to_owned(), demand, every: 5 });
+    let status = status::of(&plan, folder.path(), Shard::WHOLE).unwrap();
+    let found = &status.requirements["NAV-1"];
+    assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.reason);
+    assert_eq!((found.draws.not_passed, found.draws.unknown), (40, 40));
+    assert!(
+        found.reason.contains("40 independent draws came to nothing; case "),
+        "{}",
+        found.reason
+    );
+    assert_eq!((status.stopped.clone(), status.cases), (None, 40));
+    // They count against a claim that it is kept: 60 draws that passed would be enough.
+    let kept = Parts { checks: vec![Found::Kept], ..without.clone() };
+    let folder = tempfile::tempdir().unwrap();
+    let mut outcomes = vec![Came::Ran(kept); 60];
+    outcomes.extend(vec![Came::Ran(without.clone()); 10]);
+    let (plan, _) = campaign(folder.path(), &outcomes, Some(required));
+    let status = status::of(&plan, folder.path(), Shard::WHOLE).unwrap();
+    assert_eq!(status.requirements["NAV-1"].verdict, Verdict::Inconclusive);
+    // Failures among them still show that it is broken, and end the campaign.
+    let broken = Parts { checks: vec![Found::Broken], ..without };
+    let folder = tempfile::tempdir().unwrap();
+    let (mut plan, _) = campaign(folder.path(), &vec![Came::Ran(broken); 40], Some(required));
+    plan.stop = Some(StopRule { requirement: "NAV-1".to_owned(), demand, every: 5 });
+    let status = status::of(&plan, folder.path(), Shard::WHOLE).unwrap();
+    assert_eq!(status.requirements["NAV-1"].verdict, Verdict::Fail);
+    assert!(status.stopped.is_some() && status.cases == 5, "{:?}", status.stopped);
 }
 
 #[test]

@@ -212,3 +212,41 @@ fn gimbals_are_drawn_at_the_ends_of_moves_and_once_a_minute() {
     assert_eq!(degrees, [0.0, 0.0, 0.0, 57.0, 57.0, 57.0, 57.0]);
     assert!(points.iter().all(|point| point.stop == Some(1)));
 }
+
+#[test]
+fn maxima_are_over_every_answer_and_never_against_a_truth_that_moved_on() {
+    let mut observers = observers();
+    let navigate = |number: u64| answer(number, Mode::Navigating);
+    let truth_at = |latitude_rad: f64| Truth { latitude_rad, ..truth() };
+    // Asks for the truth as a run does; the truth stands from number 31 on, 1e-5 rad further.
+    let mut asked = Vec::new();
+    for number in 1..=60u64 {
+        let further = 1e-5 * number.clamp(11, 31) as f64;
+        let mut output = navigate(number);
+        output.navigation.latitude_rad += further;
+        if number == 45 {
+            output.navigation.latitude_rad += 1e-3;
+        }
+        let sent = sent(number);
+        observers.source(&sent);
+        let due = observers.answer(&sent, true, &output);
+        let stands = Some(!(12..=31).contains(&number));
+        let between = observers.between(&output, || stands);
+        assert!(!(due && between), "{number}");
+        if due {
+            observers.truth(&output, &truth_at(0.5 + further));
+        } else if between {
+            asked.push(number);
+            observers.truth_between(&output, &truth_at(0.5 + further), stands);
+        }
+    }
+    // Where the truth moves by more than the step that is looked at, every answer is compared.
+    assert!((12..=31).filter(|n| n % 10 != 0).all(|n| asked.contains(&n)), "{asked:?}");
+    assert!(asked.iter().all(|n| (12..=31).contains(n)), "{asked:?}");
+    let score = observers.drift.scored().unwrap();
+    let score = score.finish(octant_score::summary::HeightChannel::Held).unwrap();
+    let arcmin = score.latitude_error_arcmin.max * std::f64::consts::PI / 180.0 / 60.0;
+    assert!((arcmin - 1e-3).abs() < 1e-7, "{arcmin}");
+    let rms = score.latitude_error_arcmin.rms * std::f64::consts::PI / 180.0 / 60.0;
+    assert!(rms < 1e-7, "the answer between two seconds is in the maximum alone: {rms}");
+}

@@ -103,6 +103,11 @@ impl Source for AnySource {
         each!(&self.kind, source => source.truth())
     }
 
+    #[inline]
+    fn truth_stands(&self) -> Option<bool> {
+        each!(&self.kind, source => source.truth_stands())
+    }
+
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
         each!(&mut self.kind, source => source.temperature_c())
     }

@@ -70,6 +70,12 @@ pub trait Source {
     /// than a sample: ask for it only when it is recorded.
     fn truth(&self) -> Option<Truth>;
 
+    /// Returns whether the truth at the last epoch is, but for its time, that at the epoch before;
+    /// `Some(false)`: it may differ, and costs more than a sample. `None`: this isn't known without it.
+    fn truth_stands(&self) -> Option<bool> {
+        None
+    }
+
     /// Returns the temperature of the instrument at the last epoch, °C, where the source has one.
     ///
     /// # Errors

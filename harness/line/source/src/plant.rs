@@ -53,6 +53,11 @@ impl Source for PlantSource {
         Some(self.plant().truth())
     }
 
+    #[inline]
+    fn truth_stands(&self) -> Option<bool> {
+        Some(self.plant().stands())
+    }
+
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
         Ok(Some(self.plant().temperature_c()))
     }

@@ -24,7 +24,7 @@ pub struct CaseAngles {
 
 /// Elements of `c_nc` from which heading, pitch and roll follow, as pairs of sine and cosine with a
 /// common factor.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Pairs {
     heading: [f64; 2],
     pitch: [f64; 2],
@@ -58,6 +58,37 @@ fn difference(computed: [f64; 2], truth: [f64; 2]) -> f64 {
     )
 }
 
+/// True attitude of the case, with which many computed ones are compared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CaseReference {
+    q_bc: Quaternion<f64>,
+    truth: Pairs,
+}
+
+impl CaseReference {
+    /// Makes the reference of a true attitude of the body, with true gimbal angles, rad.
+    pub(crate) fn new(truth: [f64; 4], gimbal_rad: [f64; 2]) -> Self {
+        let q_bc = case_in_body(gimbal_rad);
+        Self { truth: Pairs::of(truth, &q_bc), q_bc }
+    }
+
+    /// Returns whether another reference is the same, or both aren't known.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        let unknown = |of: &Self| of.truth.heading[0].is_nan();
+        self.q_bc == other.q_bc && (self.truth == other.truth || (unknown(self) && unknown(other)))
+    }
+
+    /// Errors in heading, pitch and roll of a computed attitude, rad: those of [`CaseAngles::error`].
+    pub(crate) fn errors(&self, computed: [f64; 4]) -> [f64; 3] {
+        let (computed, truth) = (Pairs::of(computed, &self.q_bc), &self.truth);
+        [
+            difference(computed.heading, truth.heading),
+            difference(computed.pitch, truth.pitch),
+            difference(computed.roll, truth.roll),
+        ]
+    }
+}
+
 /// Quaternion of `c_bc`: the inverse of `c_cb = Rx(roll) · Rz(azimuth)`.
 fn case_in_body([azimuth_rad, roll_rad]: [f64; 2]) -> Quaternion<f64> {
     let (sa, ca) = libm::sincos(0.5 * azimuth_rad);
@@ -83,12 +114,8 @@ impl CaseAngles {
     /// x, y, z) of the body; `gimbal_rad` are the true gimbal angles (azimuth, roll).
     #[must_use]
     pub fn error(computed: [f64; 4], truth: [f64; 4], gimbal_rad: [f64; 2]) -> Self {
-        let q_bc = case_in_body(gimbal_rad);
-        let (computed, truth) = (Pairs::of(computed, &q_bc), Pairs::of(truth, &q_bc));
-        Self {
-            heading_rad: difference(computed.heading, truth.heading),
-            pitch_rad: difference(computed.pitch, truth.pitch),
-            roll_rad: difference(computed.roll, truth.roll),
-        }
+        let [heading_rad, pitch_rad, roll_rad] =
+            CaseReference::new(truth, gimbal_rad).errors(computed);
+        Self { heading_rad, pitch_rad, roll_rad }
     }
 }

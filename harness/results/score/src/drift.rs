@@ -2,6 +2,7 @@
 //! slope and Schuler oscillation, radial error.
 
 use super::attitude::CaseAngles;
+use super::every_answer::{AnsweredSolution, EveryAnswer, LargestErrors, StandingTruth};
 use super::gaps::{self, GapBridge};
 use super::regression::{SecularSlope, Slopes};
 use super::series::ErrorSeries;
@@ -108,8 +109,8 @@ impl Extent {
     }
 }
 
-/// Scores the drift of one navigation while it runs, at 1 Hz or any slower rate. Memory doesn't grow
-/// with the length of the run.
+/// Scores the drift of one navigation while it runs: integrals and regressions at 1 Hz or any slower rate,
+/// maxima over all answers between, too. Memory doesn't grow with the length of the run.
 #[derive(Clone, Debug)]
 pub struct DriftScorer {
     samples: u64,
@@ -126,9 +127,20 @@ pub struct DriftScorer {
     time_square: f64,
     slope: Option<SecularSlope<ERRORS>>,
     marks: BTreeMap<String, Mark>,
+    between: EveryAnswer,
+    /// Next mark of the answers between, ns.
+    mark_ns: u64,
+    /// Last mark that they passed, s, with their largest errors up to it.
+    at_mark: Option<(f64, LargestErrors)>,
     series: ErrorSeries,
     gaps: Option<Box<GapBridge>>,
     broken: Option<DriftError>,
+}
+
+/// Returns the first mark after a time of the navigation, ns; the largest number if there is none.
+fn next_mark_ns(after_ns: u64) -> u64 {
+    let marks_ns = MARKS_H.map(|hour| u64::from(hour) * 3_600_000_000_000);
+    marks_ns.into_iter().find(|mark_ns| *mark_ns > after_ns).unwrap_or(u64::MAX)
 }
 
 impl Default for DriftScorer {
@@ -153,6 +165,9 @@ impl DriftScorer {
             time_square: 0.0,
             slope: None,
             marks: BTreeMap::new(),
+            between: EveryAnswer::default(),
+            mark_ns: next_mark_ns(0),
+            at_mark: None,
             series: ErrorSeries::new(),
             gaps: None,
             broken: None,
@@ -212,6 +227,7 @@ impl DriftScorer {
             gaps.push(now.t_s, &now.with_radial(), place, sample.velocity_error_mps);
         }
         self.samples += 1;
+        self.between.scored();
         self.attitude &= sample.attitude_error.is_some();
         self.velocity &= sample.velocity_error_mps.is_some();
         for (extent, error) in self.extents.iter_mut().zip(&each) {
@@ -225,6 +241,47 @@ impl DriftScorer {
             .push(now.t_s, &each);
         self.series.push([now.t_s / 3600.0, each[LATITUDE], each[LONGITUDE]]);
         self.previous = Some(now);
+    }
+
+    /// Takes the truth with which the answers between two samples are compared; `None`: it isn't known.
+    pub fn stand(&mut self, truth: Option<StandingTruth>) {
+        self.between.stand(truth);
+    }
+
+    /// Returns whether answers between two samples are compared with this truth.
+    #[must_use]
+    pub fn stands_at(&self, truth: &StandingTruth) -> bool {
+        self.between.stands_at(truth)
+    }
+
+    /// True if there is a truth with which answers between two samples can be compared.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_truth(&self) -> bool {
+        self.between.has_truth()
+    }
+
+    /// Returns whether an answer between two samples is to be compared with its truth, which moves.
+    #[inline(always)]
+    pub fn strays(&mut self, answer: &AnsweredSolution) -> bool {
+        self.between.strays(answer)
+    }
+
+    /// Takes an answer between two samples, with its time since the start of the navigation, ns, at the
+    /// truth that stands: for the maxima.
+    #[inline(always)]
+    pub fn between(&mut self, t_ns: u64, answer: &AnsweredSolution) {
+        if t_ns > self.mark_ns {
+            self.pass_mark();
+        }
+        self.between.take(answer);
+    }
+
+    /// Keeps the largest errors between up to the next mark.
+    #[cold]
+    fn pass_mark(&mut self) {
+        self.at_mark = Some((self.mark_ns as f64 * 1e-9, self.between.largest()));
+        self.mark_ns = next_mark_ns(self.mark_ns);
     }
 
     /// Adds the interval between two samples: integrals, and marks that are reached.
@@ -241,15 +298,20 @@ impl DriftScorer {
                 let latitude = at(before.each[LATITUDE], now.each[LATITUDE]);
                 let longitude = at(before.each[LONGITUDE], now.each[LONGITUDE]);
                 let radial = at(before.radial_nmi, now.radial_nmi);
+                let passed = self.at_mark.filter(|(at_s, _)| *at_s == mark_s);
+                let between = passed.map_or_else(|| self.between.largest(), |(_, largest)| largest);
+                let largest = |error: usize, at: f64| {
+                    self.extents[error].max.max(at.abs()).max(between.each[error])
+                };
                 self.marks.insert(
                     format!("{hour}h"),
                     Mark {
                         latitude_arcmin: latitude,
                         longitude_arcmin: longitude,
                         radial_nmi: radial,
-                        latitude_max_arcmin: self.extents[LATITUDE].max.max(latitude.abs()),
-                        longitude_max_arcmin: self.extents[LONGITUDE].max.max(longitude.abs()),
-                        radial_max_nmi: self.radial.max.max(radial),
+                        latitude_max_arcmin: largest(LATITUDE, latitude),
+                        longitude_max_arcmin: largest(LONGITUDE, longitude),
+                        radial_max_nmi: self.radial.max.max(radial).max(between.radial_nmi),
                     },
                 );
             }
@@ -274,8 +336,10 @@ impl DriftScorer {
         let last = self.previous.filter(|_| self.samples > 1).ok_or(DriftError::Empty)?;
         let duration_s = last.t_s - self.first_s;
         let slopes: Option<Slopes<ERRORS>> = self.slope.as_ref().and_then(SecularSlope::slopes);
+        let between = self.between.largest();
+        let largest = |error: usize| self.extents[error].max.max(between.each[error]);
         let score = |error: usize| ErrorScore {
-            max: self.extents[error].max,
+            max: largest(error),
             rms: self.extents[error].rms(duration_s),
             r#final: last.each[error],
             slope_per_day: slopes.map(|s| s.per_day[error]),
@@ -317,7 +381,7 @@ impl DriftScorer {
             velocity_north_error_mps: velocity(NORTH),
             velocity_east_error_mps: velocity(EAST),
             radial_error_nmi: RadialScore {
-                max: self.radial.max,
+                max: self.radial.max.max(between.radial_nmi),
                 rms: self.radial.rms(duration_s),
                 r#final: last.radial_nmi,
                 rate_per_h: 3600.0 * self.radial_time / self.time_square,

@@ -1,6 +1,7 @@
 //! Scores of a run: drift of the navigation, accuracy of the parameters, verdict.
 //!
-//! - [`drift`] scores the errors of the navigation solution, streamed at 1 Hz or slower;
+//! - [`drift`] scores the errors of the navigation solution, streamed at 1 Hz or slower, and
+//!   [`every_answer`] the largest of all answers between;
 //!   [`mod@attitude`] has heading, pitch and roll of the case, [`mod@alignment`] attitude and velocity at one
 //!   time with their σ
 //! - [`parameters`] compares estimates with truth, normalized by their σ
@@ -23,6 +24,7 @@ pub mod compare;
 pub mod counterfactual;
 pub mod drift;
 pub mod equipment;
+pub mod every_answer;
 mod finding;
 pub mod floor;
 mod gaps;

@@ -11,6 +11,7 @@ mod compare;
 mod counterfactual;
 mod drift;
 mod equipment;
+mod every_answer;
 mod gaps;
 mod health;
 mod junit;

@@ -2,7 +2,7 @@
 
 use crate::measures::without_secant;
 use crate::requirement::{
-    Check, EnsembleRequirement, Limit, Requirement, Verification, percent, probability,
+    Check, EnsembleRequirement, Limit, Requirement, Verification, confidence, percent, probability,
 };
 use crate::verdict::Comparison;
 
@@ -104,10 +104,12 @@ pub fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
         };
         let part = |name: &'static str| match of(name) {
             None => Ok(None),
-            Some((line, text)) => match probability(text) {
-                Ok(probability) => Ok(Some(probability)),
-                Err(error) => Err((line, format!("{name}: {error}"))),
-            },
+            Some((line, text)) => {
+                match if name == CONFIDENCE { confidence(text) } else { probability(text) } {
+                    Ok(probability) => Ok(Some(probability)),
+                    Err(error) => Err((line, format!("{name}: {error}"))),
+                }
+            }
         };
         let ensemble = match (part(PASS)?, part(CONFIDENCE)?) {
             (Some(pass), Some(confidence)) => Some(EnsembleRequirement { pass, confidence }),

@@ -59,7 +59,7 @@ impl Limit {
 pub struct EnsembleRequirement {
     /// Probability that a run passes, above 0 and below 1.
     pub pass: f64,
-    /// One-sided confidence, above 0 and below 1.
+    /// One-sided confidence, at least 0.5 and below 1.
     pub confidence: f64,
 }
 
@@ -75,6 +75,14 @@ pub enum ProbabilityError {
     /// The percentage is out of range.
     #[error("found {found:?}, expected more than 0 % and less than 100 %")]
     Range {
+        /// Text found.
+        found: String,
+    },
+    /// The percentage is too low for a confidence.
+    #[error(
+        "found {found:?}, expected a confidence of at least 50 %: with less the opposite is as likely"
+    )]
+    Confidence {
         /// Text found.
         found: String,
     },
@@ -101,6 +109,18 @@ pub fn probability(text: &str) -> Result<f64, ProbabilityError> {
         Some(_) => Err(ProbabilityError::Range { found: found() }),
         None => Err(ProbabilityError::Percentage { found: found() }),
     }
+}
+
+/// Parses a confidence in percent, `95 %`.
+///
+/// # Errors
+/// If it is no probability, or below 50 %.
+pub fn confidence(text: &str) -> Result<f64, ProbabilityError> {
+    let found = probability(text)?;
+    if found < 0.5 {
+        return Err(ProbabilityError::Confidence { found: text.to_owned() });
+    }
+    Ok(found)
 }
 
 /// Text of a probability above 0 and below 1, which [`probability`] parses to the same number.

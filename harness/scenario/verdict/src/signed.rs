@@ -1,4 +1,5 @@
-//! Measures with a sign: a limit on only one side of them lets any value on the other side pass.
+//! Signs of measures: a limit on only one side of a measure with a sign lets any value on the other side pass, and a
+//! lower limit of zero on a magnitude lets every value pass.
 
 use crate::measures::is_signed;
 use crate::verdict::Comparison;
@@ -26,4 +27,21 @@ pub fn one_sided<'a>(
         "found {measure:?} with {sign} alone: it has a sign, and on the other side any value would pass; expected \
          \"|{measure}|\" for its magnitude, or a second requirement with {other} for the other side"
     ))
+}
+
+/// Finds a limit that a magnitude can't break, and returns the error text; `None` if there is no error.
+#[must_use]
+pub fn unbreakable((measure, comparison): (&str, Comparison), limit: f64) -> Option<String> {
+    let any_value = match comparison {
+        Comparison::AtLeast => limit <= 0.0,
+        Comparison::Above => limit < 0.0,
+        Comparison::AtMost | Comparison::Below => false,
+    };
+    let is_magnitude = measure.starts_with('|') || !is_signed(measure);
+    (any_value && is_magnitude).then(|| {
+        format!(
+            "found {measure:?} {} {limit}: it is never negative, and every value would pass; expected a limit above 0",
+            comparison.sign()
+        )
+    })
 }

@@ -2,7 +2,7 @@
 
 use crate::requirement::{EnsembleRequirement, Requirement, Requirements, Verification};
 use crate::verdict::Verdict;
-use octant_statistics::cluster::{DrawCounts, DrawTally};
+use octant_statistics::cluster::{DrawCounts, DrawTally, RowResult};
 use octant_statistics::proportion;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -188,7 +188,15 @@ impl<'a> GrowingTrace<'a> {
             known = true;
             let verdict = worst.get(id).copied();
             row.counts.add(verdict);
-            row.draws.add(case.draw, verdict.map(|verdict| verdict == Verdict::Pass));
+            row.draws.add(
+                case.draw,
+                match verdict {
+                    None => RowResult::Open,
+                    Some(Verdict::Pass) => RowResult::Passed,
+                    Some(Verdict::Fail) => RowResult::Failed,
+                    Some(_) => RowResult::Unknown,
+                },
+            );
             if row.links.len() < self.links_max {
                 row.links.push(TraceLink {
                     case: case.id.clone(),
@@ -279,10 +287,11 @@ fn row(requirement: &Requirement, cases: GrowingRow) -> TraceRow {
 /// Combines the checks of a requirement.
 ///
 /// Without a required probability the worst check decides. With one, independent draws are counted, not
-/// checks: a draw passes if all of its checks did, and inconclusive checks (a calibration that was
-/// refused, a run that ended early) count as not passed. The verdict is pass if the lower bound of the
+/// checks: a draw passes if all of its checks did. The verdict is pass if the lower bound of the
 /// probability that a draw passes (Clopper and Pearson) reaches the required one, fail if the upper
-/// bound doesn't, and inconclusive between. Errors and missing checks never result in a pass.
+/// bound doesn't, and inconclusive between. A check that came to nothing (a value that isn't there, a run
+/// that ended early) counts against both: for the lower bound its draw didn't pass, for the upper one it
+/// may have. Errors and missing checks never result in a pass.
 #[must_use]
 pub fn judge(
     ensemble: Option<EnsembleRequirement>,
@@ -309,15 +318,17 @@ pub fn judge(
             (Verdict::Pass, format!("all {all} checks passed, of {of}"))
         };
     };
-    let DrawCounts { passed, not_passed, open, .. } = draws;
+    let DrawCounts { passed, not_passed, unknown, open, .. } = draws;
     let lower = proportion::success_lower_bound(not_passed, draws.known(), confidence);
-    // A draw without a result might pass: the verdict is fail only if that wouldn't help.
-    let upper = proportion::success_upper_bound(not_passed, draws.all(), confidence);
+    // A draw without a result might pass, and one that came to nothing might have: the verdict is fail only
+    // if that wouldn't help.
+    let upper = proportion::success_upper_bound(draws.failed(), draws.all(), confidence);
     let percent = |p: f64| format!("{:.2} %", 100.0 * p);
     if upper < required {
         let told = format!(
-            "{not_passed} of {} did not pass: with {} confidence the probability that a draw passes \
-             is at most {}, required {}",
+            "{} of {} failed: with {} confidence the probability that a draw passes is at most {}, \
+             required {}",
+            draws.failed(),
             counted(draws.all()),
             percent(confidence),
             percent(upper),
@@ -327,6 +338,9 @@ pub fn judge(
     }
     let mut found = claim(draws, lower, confidence);
     found += &format!(", required {}", percent(required));
+    if unknown > 0 {
+        found += &format!("; {} came to nothing", counted(unknown));
+    }
     if open > 0 {
         (Verdict::Inconclusive, format!("{found}; {} without a result", counted(open)))
     } else if passed > 0 && lower >= required {
@@ -341,6 +355,8 @@ pub fn judge(
 #[must_use]
 pub fn claim(draws: DrawCounts, lower: f64, confidence: f64) -> String {
     let all_of = match draws.rows {
+        // Of draws that are open, some checks are missing.
+        rows if rows > draws.all() && draws.open > 0 => " in all of their checks".to_owned(),
         rows if rows > draws.all() => format!(" in all of their {rows} checks"),
         _ => String::new(),
     };

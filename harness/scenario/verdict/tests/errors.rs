@@ -121,6 +121,10 @@ fn each_key_says_what_it_expects() {
             "7:8: requirements.N-1.pass: found \"0.95\", expected a percentage such as \"95 %\"",
         ),
         (
+            "measure = \"a\"\nlimit = 1\npass = \"95 %\"\nconfidence = \"1 %\"\n",
+            "found \"1 %\", expected a confidence of at least 50 %",
+        ),
+        (
             "measure = \"a\"\nlimit = 1\npass = \"100 %\"\nconfidence = \"95 %\"\n",
             "expected more than 0 % and less than 100 %",
         ),

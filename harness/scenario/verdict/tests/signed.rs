@@ -2,7 +2,7 @@
 
 use octant_verdict::Comparison;
 use octant_verdict::measures::is_signed;
-use octant_verdict::signed::one_sided;
+use octant_verdict::signed::{one_sided, unbreakable};
 
 #[test]
 fn signs_are_known() {
@@ -55,4 +55,22 @@ fn one_side_of_a_sign_is_refused_with_the_spelling_to_use() {
     let bars = format!("|{slope}|");
     assert_eq!(one_sided((&bars, Comparison::AtMost), []), None);
     assert_eq!(one_sided(("calibration.nis_mean", Comparison::AtMost), []), None);
+}
+
+#[test]
+fn a_limit_that_no_magnitude_breaks_is_refused() {
+    let refused = |measure: &str, comparison, limit| unbreakable((measure, comparison), limit);
+    let sigma = "counterfactual.worst_shift_sigma";
+    let text = refused(sigma, Comparison::AtLeast, 0.0).unwrap();
+    assert!(
+        text.contains("\"counterfactual.worst_shift_sigma\" >= 0")
+            && text.contains("never negative"),
+        "{text}"
+    );
+    assert!(refused(sigma, Comparison::Above, -1.0).is_some());
+    assert!(refused("|calibration.parameters.g_zz.error|", Comparison::AtLeast, 0.0).is_some());
+    assert_eq!(refused(sigma, Comparison::Above, 0.0), None);
+    assert_eq!(refused(sigma, Comparison::AtLeast, 3.0), None);
+    assert_eq!(refused(sigma, Comparison::AtMost, 0.0), None);
+    assert_eq!(refused("calibration.parameters.g_zz.error", Comparison::AtLeast, -1.0), None);
 }

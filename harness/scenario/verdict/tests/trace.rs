@@ -118,7 +118,11 @@ fn an_ensemble_passes_by_its_bound() {
         let counts = VerdictCounts { pass, fail, inconclusive, missing, error: 0 };
         let rows = pass + fail + inconclusive + missing;
         let not_passed = fail + inconclusive;
-        judge(demand, counts, DrawCounts { passed: pass, not_passed, open: missing, rows })
+        judge(
+            demand,
+            counts,
+            DrawCounts { passed: pass, not_passed, unknown: inconclusive, open: missing, rows },
+        )
     };
     let verdict = |pass, fail| judged(pass, fail, 0, 0).0;
     assert_eq!(verdict(59, 0), Verdict::Pass);
@@ -128,13 +132,22 @@ fn an_ensemble_passes_by_its_bound() {
     assert_eq!(verdict(92, 1), Verdict::Pass);
     assert_eq!(verdict(50, 10), Verdict::Fail);
     assert_eq!(verdict(0, 1), Verdict::Inconclusive);
-    // Inconclusive runs count as not passed: they neither block a pass for ever nor support one.
+    // Inconclusive runs count against a pass: they neither block it for ever nor support it. They never prove a
+    // failure.
     assert_eq!(judged(91, 0, 1, 0).0, Verdict::Inconclusive);
     assert_eq!(judged(92, 0, 1, 0).0, Verdict::Pass);
-    assert_eq!(judged(50, 0, 10, 0).0, Verdict::Fail);
+    assert_eq!(judged(50, 0, 10, 0).0, Verdict::Inconclusive);
+    assert_eq!(judged(0, 0, 100, 0).0, Verdict::Inconclusive);
+    assert!(judged(0, 0, 100, 0).1.ends_with("; 100 independent draws came to nothing"));
+    assert_eq!(judged(50, 10, 1, 0).0, Verdict::Fail);
     assert_eq!(judged(1000, 0, 0, 1).0, Verdict::Inconclusive);
+    // 9 of 64 checks are there: two draws have all of theirs.
+    let counts = VerdictCounts { pass: 9, missing: 55, ..VerdictCounts::default() };
+    let draws = DrawCounts { passed: 2, not_passed: 0, unknown: 0, open: 14, rows: 64 };
+    let told = judge(demand, counts, draws).1;
+    assert!(told.starts_with("2 of 2 independent draws passed in all of their checks: "), "{told}");
     let counts = VerdictCounts { pass: 1000, error: 1, ..VerdictCounts::default() };
-    let draws = DrawCounts { passed: 1000, not_passed: 1, open: 0, rows: 1001 };
+    let draws = DrawCounts { passed: 1000, not_passed: 1, unknown: 0, open: 0, rows: 1001 };
     assert_eq!(judge(demand, counts, draws).0, Verdict::Error);
     assert_eq!(
         judged(59, 0, 0, 0).1,

@@ -57,43 +57,57 @@ fn join(first: &mut [u32], rows: &[u32]) {
     }
 }
 
+/// Result of a row, or of a draw: the worst of its rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum RowResult {
+    /// It passed.
+    Passed,
+    /// It has not run.
+    Open,
+    /// It ran and came to nothing: it doesn't show that the requirement is kept, and not that it is broken.
+    Unknown,
+    /// It failed.
+    Failed,
+}
+
+impl RowResult {
+    /// Result of a row that either passed or failed; `None`: it has not run.
+    #[must_use]
+    pub fn of(passed: Option<bool>) -> Self {
+        passed.map_or(Self::Open, |passed| if passed { Self::Passed } else { Self::Failed })
+    }
+}
+
 /// Results of draws whose rows come one by one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawTally {
     /// Result of each draw by its number: `None` if it has no row.
-    dense: Vec<Option<DrawResult>>,
+    dense: Vec<Option<RowResult>>,
     /// Draws whose numbers are far beyond the number of rows.
-    sparse: BTreeMap<usize, DrawResult>,
+    sparse: BTreeMap<usize, RowResult>,
     rows: u64,
 }
-
-/// Whether a draw passed; `None`: it is open.
-type DrawResult = Option<bool>;
 
 /// Length by which the list of draws grows at most for one row.
 const GROWTH: usize = 1 << 12;
 
 impl DrawTally {
-    /// Adds a row of a draw, and whether it passed; `None`: no result yet.
-    pub fn add(&mut self, draw: usize, passed: Option<bool>) {
+    /// Adds a row of a draw with its result.
+    pub fn add(&mut self, draw: usize, result: RowResult) {
         self.rows += 1;
         if draw >= self.dense.len() && draw - self.dense.len() < GROWTH {
             let more = self.dense.len()..=draw;
             self.dense.extend(more.map(|draw| self.sparse.remove(&draw)));
         }
         let all = match self.dense.get_mut(draw) {
-            Some(all) => all.get_or_insert(Some(true)),
-            None => self.sparse.entry(draw).or_insert(Some(true)),
+            Some(all) => all.get_or_insert(RowResult::Passed),
+            None => self.sparse.entry(draw).or_insert(RowResult::Passed),
         };
-        *all = match (*all, passed) {
-            (Some(false), _) | (_, Some(false)) => Some(false),
-            (None, _) | (_, None) => None,
-            (Some(true), Some(true)) => Some(true),
-        };
+        *all = result.max(*all);
     }
 
-    /// Returns whether each draw passed, in the order of their numbers; `None`: it is open.
-    pub fn results(&self) -> impl Iterator<Item = Option<bool>> {
+    /// Returns the result of each draw, in the order of their numbers.
+    pub fn results(&self) -> impl Iterator<Item = RowResult> {
         self.dense.iter().copied().flatten().chain(self.sparse.values().copied())
     }
 
@@ -101,12 +115,8 @@ impl DrawTally {
     #[must_use]
     pub fn counts(&self) -> DrawCounts {
         let mut counts = DrawCounts { rows: self.rows, ..DrawCounts::default() };
-        for passed in self.results() {
-            *match passed {
-                Some(true) => &mut counts.passed,
-                Some(false) => &mut counts.not_passed,
-                None => &mut counts.open,
-            } += 1;
+        for result in self.results() {
+            counts.count(result, 1);
         }
         counts
     }
@@ -119,19 +129,47 @@ pub struct DrawCounts {
     pub passed: u64,
     /// Draws with a row that didn't pass: it failed or was inconclusive.
     pub not_passed: u64,
+    /// Draws among these with no row that failed: they count against a claim that a requirement is kept, and not for one
+    /// that it is broken.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub unknown: u64,
     /// Draws with a row without a result, and with none that didn't pass.
     pub open: u64,
     /// Number of rows of all draws.
     pub rows: u64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+const fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 impl DrawCounts {
-    /// Counts draws. Each row has its draw, and whether it passed; `None`: no result yet.
+    /// Counts draws. Each row has its draw and its result.
     #[must_use]
-    pub fn of(rows: impl IntoIterator<Item = (usize, Option<bool>)>) -> Self {
+    pub fn of(rows: impl IntoIterator<Item = (usize, RowResult)>) -> Self {
         let mut tally = DrawTally::default();
-        rows.into_iter().for_each(|(draw, passed)| tally.add(draw, passed));
+        rows.into_iter().for_each(|(draw, result)| tally.add(draw, result));
         tally.counts()
+    }
+
+    /// Adds to the number of draws with a result.
+    const fn count(&mut self, result: RowResult, by: i64) {
+        let count = match result {
+            RowResult::Passed => &mut self.passed,
+            RowResult::Open => &mut self.open,
+            RowResult::Unknown | RowResult::Failed => &mut self.not_passed,
+        };
+        *count = count.saturating_add_signed(by);
+        if matches!(result, RowResult::Unknown) {
+            self.unknown = self.unknown.saturating_add_signed(by);
+        }
+    }
+
+    /// Number of draws that failed: they show that a requirement is broken.
+    #[must_use]
+    pub const fn failed(&self) -> u64 {
+        self.not_passed - self.unknown
     }
 
     /// Number of draws with a result.
@@ -154,18 +192,18 @@ pub struct Growing<H> {
     by_stream: HashMap<H, usize>,
     /// Index of the entry that each was joined with; its own index if it stands for a draw.
     joined: Vec<usize>,
-    passed: Vec<bool>,
+    results: Vec<RowResult>,
     counts: DrawCounts,
 }
 
 impl<H: Hash + Eq> Growing<H> {
-    /// Adds the rows of one seed: whether each passed, and its stream.
-    pub fn add(&mut self, rows: impl IntoIterator<Item = (bool, Option<H>)>) {
+    /// Adds the rows of one seed: the result of each, and its stream.
+    pub fn add(&mut self, rows: impl IntoIterator<Item = (RowResult, Option<H>)>) {
         let new = self.joined.len();
         self.joined.push(new);
-        self.passed.push(true);
+        self.results.push(RowResult::Passed);
         self.counts.passed += 1;
-        for (passed, stream) in rows {
+        for (result, stream) in rows {
             self.counts.rows += 1;
             if let Some(stream) = stream {
                 let mut other = *self.by_stream.entry(stream).or_insert(new);
@@ -174,11 +212,11 @@ impl<H: Hash + Eq> Growing<H> {
                 }
                 if other != new {
                     self.joined[other] = new;
-                    self.count(other, -1);
-                    self.set(new, self.passed[other]);
+                    self.counts.count(self.results[other], -1);
+                    self.set(new, self.results[other]);
                 }
             }
-            self.set(new, passed);
+            self.set(new, result);
         }
     }
 
@@ -188,15 +226,9 @@ impl<H: Hash + Eq> Growing<H> {
         self.counts
     }
 
-    fn set(&mut self, draw: usize, passed: bool) {
-        self.count(draw, -1);
-        self.passed[draw] &= passed;
-        self.count(draw, 1);
-    }
-
-    fn count(&mut self, draw: usize, by: i64) {
-        let counts = &mut self.counts;
-        let count = if self.passed[draw] { &mut counts.passed } else { &mut counts.not_passed };
-        *count = count.saturating_add_signed(by);
+    fn set(&mut self, draw: usize, result: RowResult) {
+        self.counts.count(self.results[draw], -1);
+        self.results[draw] = self.results[draw].max(result);
+        self.counts.count(self.results[draw], 1);
     }
 }

@@ -1,6 +1,6 @@
 //! The unit of inference: independent draws, not rows.
 
-use octant_statistics::cluster::{DrawCounts, DrawTally, Growing, draws};
+use octant_statistics::cluster::{DrawCounts, DrawTally, Growing, RowResult, draws};
 use octant_statistics::proportion::Demand;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ const ASKED: Demand = Demand { pass: 0.95, confidence: 0.95 };
 /// Counts the draws of a design whose rows all passed, and tests whether they show the demand.
 fn shown(rows: impl IntoIterator<Item = (u64, Option<String>)>) -> (DrawCounts, bool) {
     let of = draws(rows);
-    let counts = DrawCounts::of(of.into_iter().map(|draw| (draw as usize, Some(true))));
+    let counts = DrawCounts::of(of.into_iter().map(|draw| (draw as usize, RowResult::Passed)));
     (counts, ASKED.is_shown(counts.not_passed, counts.known()))
 }
 
@@ -70,9 +70,29 @@ fn a_draw_passes_if_all_of_its_rows_do() {
         (3, None),
         (3, Some(false)),
     ];
-    let counts = DrawCounts::of(rows);
-    assert_eq!(counts, DrawCounts { passed: 1, not_passed: 2, open: 1, rows: 8 });
+    let counts = DrawCounts::of(rows.map(|(draw, passed)| (draw, RowResult::of(passed))));
+    assert_eq!(counts, DrawCounts { passed: 1, not_passed: 2, unknown: 0, open: 1, rows: 8 });
     assert_eq!((counts.known(), counts.all()), (3, 4));
+}
+
+#[test]
+fn a_row_that_came_to_nothing_is_neither_kept_nor_broken() {
+    let rows = [
+        (0, RowResult::Passed),
+        (0, RowResult::Unknown),
+        (1, RowResult::Open),
+        (1, RowResult::Unknown),
+        (2, RowResult::Unknown),
+        (2, RowResult::Failed),
+    ];
+    let counts = DrawCounts::of(rows);
+    assert_eq!(counts, DrawCounts { passed: 0, not_passed: 3, unknown: 2, open: 0, rows: 6 });
+    assert_eq!(counts.failed(), 1);
+    let mut growing = Growing::default();
+    for draw in 0..3 {
+        growing.add(rows.iter().filter(|row| row.0 == draw).map(|row| (row.1, None::<u8>)));
+    }
+    assert_eq!(growing.counts(), counts);
 }
 
 /// Draws by their definition: rows are joined until nothing changes.
@@ -118,7 +138,7 @@ proptest! {
     ) {
         let (mut tally, mut worst) = (DrawTally::default(), BTreeMap::new());
         for (draw, passed) in &rows {
-            tally.add(*draw, *passed);
+            tally.add(*draw, RowResult::of(*passed));
             let all: &mut Vec<Option<bool>> = worst.entry(*draw).or_default();
             all.push(*passed);
         }
@@ -130,7 +150,8 @@ proptest! {
                 _ => Some(true),
             })
             .collect();
-        prop_assert_eq!(tally.results().collect::<Vec<_>>(), results.clone());
+        let expected: Vec<_> = results.iter().map(|passed| RowResult::of(*passed)).collect();
+        prop_assert_eq!(tally.results().collect::<Vec<_>>(), expected);
         let count = |wanted| results.iter().filter(|result| **result == wanted).count() as u64;
         let counts = tally.counts();
         prop_assert_eq!((counts.passed, counts.not_passed), (count(Some(true)), count(Some(false))));
@@ -144,12 +165,12 @@ proptest! {
     ) {
         let mut growing = Growing::default();
         for so_far in 0..seeds.len() {
-            growing.add(seeds[so_far].iter().copied());
+            growing.add(seeds[so_far].iter().map(|(passed, stream)| (RowResult::of(Some(*passed)), *stream)));
             let rows: Vec<_> = (seeds[..=so_far].iter().enumerate())
                 .flat_map(|(seed, rows)| rows.iter().map(move |(passed, stream)| (seed, *passed, *stream)))
                 .collect();
             let of = draws(rows.iter().map(|(seed, _, stream)| (*seed, *stream)));
-            let all = DrawCounts::of(of.into_iter().zip(&rows).map(|(draw, row)| (draw as usize, Some(row.1))));
+            let all = DrawCounts::of(of.into_iter().zip(&rows).map(|(draw, row)| (draw as usize, RowResult::of(Some(row.1)))));
             prop_assert_eq!(growing.counts(), all);
         }
     }

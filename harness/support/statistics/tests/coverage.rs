@@ -11,7 +11,7 @@
 use octant_random::normal::Ziggurat;
 use octant_random::philox::block;
 use octant_random::stream::{Phase, key};
-use octant_statistics::cluster::{DrawCounts, draws};
+use octant_statistics::cluster::{DrawCounts, RowResult, draws};
 use octant_statistics::convergence::{mean, pass};
 use octant_statistics::power::{mean_shift, sigma_ratios, signed_rank_shift, turning};
 use octant_statistics::proportion::{Demand, success_lower_bound, success_upper_bound};
@@ -136,7 +136,9 @@ fn design(
 fn counted(rows: &[(u64, bool)]) -> DrawCounts {
     let of = draws(rows.iter().map(|(seed, _)| (*seed, None::<u64>)));
     DrawCounts::of(
-        of.into_iter().zip(rows).map(|(draw, (_, passed))| (draw as usize, Some(*passed))),
+        of.into_iter()
+            .zip(rows)
+            .map(|(draw, (_, passed))| (draw as usize, RowResult::of(Some(*passed)))),
     )
 }
 

@@ -138,6 +138,17 @@ fn rank_correlations() {
         assert_near(found.rho, number(&row["rho"]), 1e-13);
         assert_near(found.p, number(&row["p"]), 1e-9);
     }
+    // Of three values in order, 2 of 6 orders are as extreme: nothing stands out.
+    let three = rank::spearman(&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0]).unwrap();
+    assert_near(three.rho, 1.0, 1e-13);
+    assert_near(three.p, 1.0 / 3.0, 1e-13);
+    assert!(!three.stands_out(0.05, 1));
+    // Exact probabilities of five values (Zar, 1972, JASA 67: ρ of 1.0 and 0.9).
+    let five = |y: [f64; 5]| rank::spearman(&[1.0, 2.0, 3.0, 4.0, 5.0], &y).unwrap().p;
+    assert_near(five([1.0, 2.0, 3.0, 4.0, 5.0]), 2.0 / 120.0, 1e-13);
+    assert_near(five([2.0, 1.0, 3.0, 4.0, 5.0]), 10.0 / 120.0, 1e-13);
+    let nine: Vec<f64> = (0..9).map(f64::from).collect();
+    assert_near(rank::spearman(&nine, &nine).unwrap().p, 2.0 / 362_880.0, 1e-13);
     assert_eq!(rank::spearman(&[1.0; 5], &[1.0, 2.0, 3.0, 4.0, 5.0]), None);
     assert_eq!(rank::spearman(&[1.0, 2.0], &[1.0, 2.0]), None);
 }

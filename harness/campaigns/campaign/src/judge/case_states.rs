@@ -5,6 +5,7 @@ use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
 use crate::store::in_plan_order::{FACTS_AT_ONCE, read_in_order};
 use crate::store::stream_key::StreamKey;
+use octant_statistics::cluster::RowResult;
 use octant_verdict::Verdict;
 
 /// State of a case that has run: what is counted of it.
@@ -19,8 +20,9 @@ pub(crate) struct CaseState {
     pub(crate) stream: Option<StreamKey>,
     /// Numerics version of the program that ran it, which old results don't have; `None` without a summary.
     pub(crate) numerics: Option<Option<u32>>,
-    /// Verdict of each requirement that its scenario checks, and whether it counts as passed.
-    pub(crate) checks: Box<[(Verdict, bool)]>,
+    /// Verdict of each requirement that its scenario checks, and what the case shows of it; with the reason, where that
+    /// is nothing.
+    pub(crate) checks: Box<[(Verdict, RowResult, Option<String>)]>,
     /// True if it has two results.
     pub(crate) differs: bool,
     /// First reason of a result that isn't a pass.
@@ -71,7 +73,9 @@ fn state(
         refused_alone: facts.refused_alone,
         stream: facts.stream().map(StreamKey::from),
         numerics: facts.run.as_ref().map(|run| run.numerics),
-        checks: ids.map(|id| (facts.check(id), facts.passes(id))).collect(),
+        checks: ids
+            .map(|id| (facts.check(id), facts.shows(id), facts.why_unknown(id).map(str::to_owned)))
+            .collect(),
         differs: results.differing(&case.id)?.is_some(),
         why: facts.why().cloned(),
     }))

@@ -8,25 +8,25 @@ use crate::plan::factor_values::FactorValue;
 use crate::plan::{Case, Plan};
 use crate::report::combination::of_grid;
 use crate::store::facts::CaseFacts;
-use octant_statistics::cluster;
+use octant_statistics::cluster::{self, RowResult};
 use std::collections::{BTreeMap, HashMap};
 
 /// Evidence of a case for a requirement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// True if the requirement was met in a run that completed its plan.
-    pub passed: bool,
+    /// Whether the requirement was met in a run that completed its plan.
+    pub result: RowResult,
     /// Hash of the stream; `None` for a case without a summary.
     pub stream: Option<String>,
 }
 
 impl Shown {
-    /// Extracts a result's evidence for a requirement. Everything except a pass counts as not
-    /// passed: a check that failed or was inconclusive, a refused calibration, an error.
+    /// Extracts a result's evidence for a requirement. A check without a value, a run that is no evidence
+    /// and an error come to nothing: they show neither that it is met nor that it isn't.
     #[must_use]
     pub fn of(facts: &CaseFacts, requirement: &str) -> Self {
         let stream = facts.stream().map(str::to_owned);
-        Self { passed: facts.passes(requirement), stream }
+        Self { result: facts.shows(requirement), stream }
     }
 }
 

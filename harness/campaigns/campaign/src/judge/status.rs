@@ -12,7 +12,7 @@ use octant_account::Account;
 use octant_base::number::plain;
 use octant_base::pool::spawn;
 use octant_score::numerics::differs;
-use octant_statistics::cluster::DrawCounts;
+use octant_statistics::cluster::{DrawCounts, RowResult};
 use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
 use octant_verdict::Verdict;
 use octant_verdict::requirement::EnsembleRequirement;
@@ -196,21 +196,29 @@ struct RequirementTally {
     /// Whether each of the cases that count shows it, as one of [`SHOWN`]; those after the last one that checks it are
     /// missing.
     shown: Vec<u8>,
+    /// First case that shows nothing, with its reason.
+    why_unknown: Option<String>,
 }
 
-/// Results of a case for a requirement, by their place: it isn't checked, has not run, didn't pass, passed.
-const SHOWN: [Option<Option<bool>>; 4] = [None, Some(None), Some(Some(false)), Some(Some(true))];
+/// Results of a case for a requirement, by their place; `None`: it isn't checked.
+const SHOWN: [Option<RowResult>; 5] = [
+    None,
+    Some(RowResult::Open),
+    Some(RowResult::Unknown),
+    Some(RowResult::Failed),
+    Some(RowResult::Passed),
+];
 
 impl RequirementTally {
-    /// Adds a case by its place among those that count; `None`: it has not run.
-    fn show(&mut self, case: usize, passed: Option<bool>) {
+    /// Adds a case by its place among those that count.
+    fn show(&mut self, case: usize, result: RowResult) {
         self.shown.resize(case, 0);
-        let place = SHOWN.iter().position(|shown| *shown == Some(passed));
+        let place = SHOWN.iter().position(|shown| *shown == Some(result));
         self.shown.push(place.and_then(|place| u8::try_from(place).ok()).unwrap_or(0));
     }
 
-    /// Returns the draw of each case that checks it, and whether it passed.
-    fn rows(&self, draws: &[u32]) -> impl Iterator<Item = (usize, Option<bool>)> {
+    /// Returns the draw of each case that checks it, and its result.
+    fn rows(&self, draws: &[u32]) -> impl Iterator<Item = (usize, RowResult)> {
         let shown = self.shown.iter().map(|place| SHOWN[usize::from(*place)]);
         draws.iter().zip(shown).filter_map(|(draw, shown)| Some((*draw as usize, shown?)))
     }
@@ -238,7 +246,7 @@ impl<'p> StatusTally<'p> {
             for id in checked {
                 let tally = self.requirements.entry(id).or_default();
                 tally.counts.missing += 1;
-                tally.show(number, None);
+                tally.show(number, RowResult::Open);
             }
             self.streams.push(None);
             return;
@@ -249,9 +257,12 @@ impl<'p> StatusTally<'p> {
         if !(is_counted && state.refused_alone) {
             status.besides = status.besides.worst(state.besides);
         }
-        for (id, (verdict, passes)) in checked.iter().zip(&state.checks) {
+        for (id, (verdict, result, why)) in checked.iter().zip(&state.checks) {
             let tally = self.requirements.entry(id).or_default();
-            tally.show(number, Some(*passes));
+            tally.show(number, *result);
+            if tally.why_unknown.is_none() {
+                tally.why_unknown = why.as_ref().map(|why| format!("case {}: {why}", case.id));
+            }
             let counts = &mut tally.counts;
             *match verdict {
                 Verdict::Pass => &mut counts.pass,
@@ -278,7 +289,10 @@ impl<'p> StatusTally<'p> {
         let of = |(id, tally): (&str, RequirementTally)| {
             let (ensemble, counts) = (self.plan.ensemble(id), tally.counts);
             let draws = DrawCounts::of(tally.rows(draws));
-            let (verdict, reason) = judge(ensemble, counts, draws);
+            let (verdict, mut reason) = judge(ensemble, counts, draws);
+            if let (true, Some(why)) = (verdict != Verdict::Pass, &tally.why_unknown) {
+                _ = write!(reason, "; {why}");
+            }
             let needed = ensemble.map(|EnsembleRequirement { pass, confidence }| {
                 further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
             });

@@ -7,7 +7,7 @@
 
 use super::independence::Shown;
 use crate::plan::{Case, Plan, StopRule};
-use octant_statistics::cluster::Growing;
+use octant_statistics::cluster::{Growing, RowResult};
 use octant_statistics::proportion::Demand;
 use std::collections::HashMap;
 
@@ -64,16 +64,16 @@ pub fn decide(
     let mut last: HashMap<u64, usize> = HashMap::new();
     let checking = || plan.cases.iter().enumerate().filter(|(_, case)| checks(&case.scenario));
     checking().for_each(|(index, case)| _ = last.insert(case.seed, index));
-    let mut begun: HashMap<u64, Vec<(bool, Option<String>)>> = HashMap::new();
+    let mut begun: HashMap<u64, Vec<(RowResult, Option<String>)>> = HashMap::new();
     let mut draws = Growing::default();
     for (index, case) in plan.cases.iter().enumerate() {
         let end = index + 1;
         if checks(&case.scenario) {
             let next = end.div_ceil(every).saturating_mul(every).min(plan.cases.len());
-            let Some(Shown { passed, stream }) = shown(case) else {
+            let Some(Shown { result, stream }) = shown(case) else {
                 return StopDecision::Open { next };
             };
-            begun.entry(case.seed).or_default().push((passed, stream));
+            begun.entry(case.seed).or_default().push((result, stream));
             if last.get(&case.seed) == Some(&index) {
                 draws.add(begun.remove(&case.seed).unwrap_or_default());
             }
@@ -83,7 +83,8 @@ pub fn decide(
             if demand.is_shown(counts.not_passed, counts.known()) {
                 return StopDecision::Shown { end };
             }
-            if demand.is_refuted(counts.not_passed, counts.known()) {
+            // A draw that came to nothing may have passed.
+            if demand.is_refuted(counts.failed(), counts.known()) {
                 return StopDecision::Refuted { end };
             }
         }

@@ -10,11 +10,13 @@ use crate::judge::independence::Shown;
 use crate::judge::stop;
 use crate::plan::shard::Shard;
 use crate::plan::{Plan, short};
+use crate::store::facts::row_result;
 use crate::table::{
     ColumnCursor, ColumnKind, ColumnValue, ExistingTable, TableError, write_streamed,
 };
 use octant_account::{Account, AccountEntry};
 use octant_base::failing::{Failing, FailureKind};
+use octant_statistics::cluster::RowResult;
 use octant_verdict::Verdict;
 use results::{Columns, NUMERICS, TABLES, ordered};
 use rows::{CaseColumn, CaseRows, CaseTable};
@@ -131,8 +133,7 @@ fn parts(folders: &[PathBuf], table: &str) -> Vec<PathBuf> {
 pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     let Some(rule) = &plan.stop else { return Ok(plan.cases.len()) };
     let mut all: HashMap<Arc<str>, Shown> = HashMap::new();
-    let pass = Some(Verdict::Pass.name());
-    // A case without a summary checked nothing, so it isn't passed.
+    // A case without a summary checked nothing, so it shows nothing.
     for path in parts(folders, "cases") {
         let table = ExistingTable::open(&path)?;
         let [mut cases, mut streams] =
@@ -142,10 +143,11 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
             texts(&table, &path, "besides").or_else(|_| texts(&table, &path, "verdict"))?;
         for _ in 0..table.rows {
             let (case, stream) = (text(&mut cases)?, text(&mut streams)?);
-            let passed = text(&mut besides)?.as_deref() == pass;
+            let besides = named(text(&mut besides)?.as_deref());
+            let result = row_result(Verdict::Pass, besides);
             let Some(case) = case else { continue };
             let stream = stream.map(|stream| stream.to_string());
-            all.insert(case, Shown { passed, stream });
+            all.insert(case, Shown { result, stream });
         }
     }
     let mut checked: HashSet<Arc<str>> = HashSet::new();
@@ -160,7 +162,8 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
                 && *id == *rule.requirement
             {
                 if let Some(shown) = all.get_mut(&case) {
-                    shown.passed &= verdict.as_deref() == pass;
+                    let check = row_result(named(verdict.as_deref()), Verdict::Pass);
+                    shown.result = shown.result.max(check);
                 }
                 checked.insert(case);
             }
@@ -168,10 +171,17 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     }
     let decision = stop::decide(plan, rule, |case| {
         let mut shown = all.get(case.id.as_str())?.clone();
-        shown.passed &= checked.contains(case.id.as_str());
+        if !checked.contains(case.id.as_str()) {
+            shown.result = shown.result.max(RowResult::Unknown);
+        }
         Some(shown)
     });
     Ok(decision.end(plan.cases.len()))
+}
+
+/// Returns the verdict of a name; an error where there is none.
+fn named(name: Option<&str>) -> Verdict {
+    Verdict::ALL.into_iter().find(|verdict| Some(verdict.name()) == name).unwrap_or(Verdict::Error)
 }
 
 /// Opens a text column of a part.

@@ -3,6 +3,7 @@
 use super::case_id::{CaseId, NoCaseId};
 use super::draw::{At, Draws};
 use super::factor_values::FactorValue;
+use super::possible::{key_of, why_not};
 use super::requirements::{self, Planned};
 use super::shared::{SharedText, SharedTexts};
 use super::shared_cases::SharedParts;
@@ -56,6 +57,13 @@ impl PlanMaker {
         if let Some(reason) = campaign.factors.iter().find_map(equal_values) {
             return Err(contradiction(reason));
         }
+        let seeds = |factor: &&FactorSpec| key_of(&factor.levels) == Some("seed");
+        if let Some(factor) = campaign.factors.iter().find(seeds) {
+            return Err(contradiction(format!(
+                "factor {:?} sets seed, which the campaign gives to each case: expected another key, or more replicates",
+                factor.name
+            )));
+        }
         let draws = super::draw::draws(&campaign).map_err(&contradiction)?;
         let file = campaign.requirements.as_deref().map(requirements::load).transpose()?;
         let of_file = file.as_ref().map(requirements::planned).unwrap_or_default();
@@ -65,7 +73,7 @@ impl PlanMaker {
             .map(|requirement| requirement.id.clone())
             .collect();
         let scenarios = (campaign.scenarios.iter())
-            .map(|member| planned(member, &of_file, path))
+            .map(|member| planned(member, &of_file, &campaign.factors, path))
             .collect::<Result<Vec<_>, _>>()?;
         let path = path.to_owned();
         let accounts = file.map(|file| file.accounts).unwrap_or_default();
@@ -274,6 +282,7 @@ fn absolute(path: &Path) -> Result<PathBuf, PlanError> {
 fn planned(
     member: &Member,
     of_file: &[Planned],
+    factors: &[FactorSpec],
     campaign: &Path,
 ) -> Result<PlannedScenario, PlanError> {
     let contradiction =
@@ -331,6 +340,10 @@ fn planned(
             }
             None => {}
         }
+    }
+    let own = base.requirements.iter().map(|own| &own.check);
+    if let Some(reason) = own.chain(&checks).find_map(|check| why_not(&base, check, factors)) {
+        return Err(contradiction(format!("scenario {:?}: {reason}", member.id)));
     }
     Ok(PlannedScenario {
         id: member.id.clone(),

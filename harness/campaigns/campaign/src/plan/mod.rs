@@ -9,6 +9,7 @@ mod error;
 pub mod factor_values;
 pub(crate) mod make;
 pub mod planned;
+mod possible;
 pub mod requirements;
 pub(crate) mod shard;
 pub mod shared;

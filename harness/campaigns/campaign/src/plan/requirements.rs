@@ -115,12 +115,15 @@ fn document(path: &Path, file: &str) -> Result<Requirements, RequirementsError> 
     }
 }
 
-/// Finds limits on only one side of a signed measure.
+/// Finds limits on only one side of a signed measure, and limits that no value breaks.
 fn one_sided(requirements: &Requirements, text: &str) -> Vec<RequirementsProblem> {
     let checks = || requirements.requirements.iter().filter_map(|r| Some((&r.id, r.check()?)));
     let both = || checks().map(|(_, check)| (check.measure.as_str(), check.comparison));
     let problem = |(id, check): (&String, &Check)| {
-        let message = signed::one_sided((&check.measure, check.comparison), both())?;
+        let this = (check.measure.as_str(), check.comparison);
+        let limit = number(&check.measure, &check.limit).unwrap_or(f64::NAN);
+        let message =
+            signed::one_sided(this, both()).or_else(|| signed::unbreakable(this, limit))?;
         let quoted = format!("\"{}\"", check.measure);
         let at = |line: &str| Some(line.find(&quoted)? + 1);
         let (line, column) = (text.lines().enumerate())
@@ -160,6 +163,16 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
+
+    #[test]
+    fn a_limit_that_no_value_breaks_is_refused_at_its_line() {
+        let text = "schema = 1\ntitle = \"Short\"\n\n[[requirements]]\nid = \"NAV-1\"\ntext = \"No drift.\"\n\
+                    measure = \"navigation.radial_error_nmi.max\"\ncomparison = \">=\"\nlimit = \"0 nmi\"\n";
+        let requirements = read(text, "short.toml", &Measures).unwrap();
+        let problems = one_sided(&requirements, text);
+        assert_eq!((problems.len(), problems[0].line), (1, 7), "{problems:?}");
+        assert!(problems[0].message.contains("every value would pass"), "{problems:?}");
+    }
 
     #[test]
     fn a_limit_on_one_side_of_a_sign_is_refused_at_its_line() {

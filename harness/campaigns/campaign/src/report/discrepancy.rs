@@ -36,7 +36,12 @@ pub(super) fn find(
                 requirement: Some(id),
                 of: "",
             };
-            let what = format!("{id} is not shown: {}", found.reason);
+            let how = match found.verdict {
+                Verdict::Fail => "is not met",
+                Verdict::Error => "could not be judged",
+                _ => "is not shown",
+            };
+            let what = format!("{id} {how}: {}", found.reason);
             all.push(Discrepancy::whole(&subject, what));
         }
     }

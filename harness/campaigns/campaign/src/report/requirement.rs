@@ -6,8 +6,9 @@ use super::figures::CONFIDENCE;
 use super::rows::{ReportRow, ReportRows, RowOutcome};
 use crate::judge::status::{CampaignStatus, RequirementStatus};
 use crate::plan::Plan;
+use crate::store::facts::row_result;
 use octant_score::verdict::RequirementResult;
-use octant_statistics::cluster::{DrawCounts, DrawTally};
+use octant_statistics::cluster::{DrawCounts, DrawTally, RowResult};
 use octant_statistics::convergence::{ConvergenceStep, convergence, pass};
 use octant_statistics::proportion::{Demand, Needed, further_at_rate, success_lower_bound};
 use octant_verdict::Verdict;
@@ -110,10 +111,8 @@ impl Counted {
                 Some(Verdict::Fail) => &mut counts.fail,
                 Some(Verdict::Error) => &mut counts.error,
             } += 1;
-            let passed = |outcome: &RowOutcome| {
-                outcome.check(id) == Verdict::Pass && outcome.besides == Verdict::Pass
-            };
-            counted.draws.add(draw, row.outcome.as_ref().map(passed));
+            let result = |outcome: &RowOutcome| row_result(outcome.check(id), outcome.besides);
+            counted.draws.add(draw, row.outcome.as_ref().map_or(RowResult::Open, result));
         }
         counted
     }
@@ -124,7 +123,8 @@ impl Counted {
 
     /// Returns whether each known draw passed, in the order in which they began.
     fn passed(&self) -> Vec<bool> {
-        self.draws.results().flatten().collect()
+        let known = self.draws.results().filter(|result| *result != RowResult::Open);
+        known.map(|result| result == RowResult::Passed).collect()
     }
 }
 

@@ -6,6 +6,7 @@ use crate::plan::{Case, PlannedScenario};
 use crate::store::error::ResultPlace;
 use octant_score::rederive::stands;
 use octant_score::verdict::RequirementResult;
+use octant_statistics::cluster::RowResult;
 use octant_verdict::Verdict;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,16 @@ pub struct SummaryFacts {
     pub numerics: Option<u32>,
     /// Checks of the case.
     pub checks: Vec<RequirementResult>,
+}
+
+/// Returns what a case shows of a requirement, from the verdict of its check and the worst one of all else: that it is
+/// met only if both passed, that it isn't only if one of them failed.
+pub(crate) fn row_result(check: Verdict, besides: Verdict) -> RowResult {
+    match (check, besides) {
+        (Verdict::Pass, Verdict::Pass) => RowResult::Passed,
+        (Verdict::Fail, _) | (_, Verdict::Fail) => RowResult::Failed,
+        _ => RowResult::Unknown,
+    }
 }
 
 impl CaseFacts {
@@ -81,10 +92,22 @@ impl CaseFacts {
         checks.map(|check| check.verdict).reduce(Verdict::worst).unwrap_or(Verdict::Inconclusive)
     }
 
-    /// Returns whether the result counts as passed for a requirement.
+    /// Returns what the result shows of a requirement.
     #[must_use]
-    pub fn passes(&self, requirement: &str) -> bool {
-        self.check(requirement) == Verdict::Pass && self.besides == Verdict::Pass
+    pub fn shows(&self, requirement: &str) -> RowResult {
+        row_result(self.check(requirement), self.besides)
+    }
+
+    /// Returns the reason why the result shows nothing of a requirement; `None`: it does, or there is no reason.
+    #[must_use]
+    pub fn why_unknown(&self, requirement: &str) -> Option<&str> {
+        if self.shows(requirement) != RowResult::Unknown {
+            return None;
+        }
+        let mut checks = self.run.iter().flat_map(|run| &run.checks);
+        let own = checks.find(|check| check.id == requirement && check.verdict != Verdict::Pass);
+        let of_check = own.and_then(|check| check.reason.as_deref());
+        of_check.or(self.error.as_deref()).or(self.reason.as_deref())
     }
 
     /// Returns the first reason of a result that isn't a pass.

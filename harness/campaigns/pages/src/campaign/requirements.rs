@@ -132,6 +132,7 @@ fn checks(counts: VerdictCounts) -> Markup {
 fn draws(draws: DrawCounts) -> Markup {
     html! {
         (draws.passed) " of " (draws.all()) " pass"
+        @if draws.unknown > 0 { div.reason { (draws.unknown) " came to nothing" } }
         @if draws.open > 0 { div.reason { (draws.open) " open" } }
     }
 }

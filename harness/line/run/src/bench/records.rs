@@ -127,11 +127,12 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Takes an answer; asks for the truth where it is needed.
+    /// Takes an answer; asks for the truth where it is needed, and whether it stands since the answer before.
     #[inline(always)]
     pub(crate) fn take(
         &mut self,
         answered: &Answered<'_>,
+        stands: impl FnOnce() -> Option<bool>,
         truth: impl FnOnce() -> Option<Truth>,
     ) -> Result<(), RecorderError> {
         let Answered { step, sent, altered, output, measured, estimate } = *answered;
@@ -147,6 +148,11 @@ impl<'a> Records<'a> {
             }
         }
         let observed = observers.answer(sent, altered, output);
+        let mut stood = None;
+        let between = observers.between(output, || {
+            stood = stands();
+            stood
+        });
         if let Some(innovation) = &measured.innovation {
             recorder.extra(&Extra::Innovation(*innovation));
             observers.innovation(output, innovation);
@@ -159,7 +165,7 @@ impl<'a> Records<'a> {
             recorder.extra(&Extra::Parameters(*estimate));
             observers.parameters(output, estimate);
         }
-        if (observed || recorder.truth_due())
+        if (observed || between || recorder.truth_due())
             && let Some(truth) = truth()
         {
             if recorder.truth_due() {
@@ -167,6 +173,8 @@ impl<'a> Records<'a> {
             }
             if observed {
                 observers.truth(output, &truth);
+            } else if between {
+                observers.truth_between(output, &truth, stood);
             }
         }
         Ok(())
@@ -179,6 +187,7 @@ impl<'a> Records<'a> {
         truth: impl FnOnce() -> Option<Truth>,
     ) -> Result<(), RecorderError> {
         self.observers.source(clean.source);
+        self.observers.lost();
         self.recorder.lost(clean.undisturbed)?;
         if self.recorder.truth_due()
             && let Some(truth) = truth()
@@ -244,7 +253,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Records<'_> {
         let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean.source, sent));
         let (measured, estimate) = (&measured, estimate.as_ref());
         let answered = Answered { step, sent, altered: !untouched, output, measured, estimate };
-        self.take(&answered, || source.truth())?;
+        self.take(&answered, || source.truth_stands(), || source.truth())?;
         let misbehaved = self.observers.answers.misbehaved.is_some();
         Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })
     }

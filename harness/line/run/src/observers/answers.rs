@@ -41,6 +41,7 @@ impl Answers {
     /// Begins anew after a restart of the unit.
     pub(super) fn restarted(&mut self) {
         self.check.restarted();
+        self.follow.altered();
     }
 
     /// Notes a violation of a real-time limit at a time of the source: later answers aren't judged.
@@ -69,8 +70,20 @@ impl Answers {
 
     /// Compares an answer to an unaltered epoch with those before it, with the time of its sample, ns.
     #[inline]
-    pub(super) fn follow(&mut self, now_ns: u64, output: &Output) {
-        self.follow.epoch(now_ns, output);
+    pub(super) fn follow(&mut self, now_ns: u64, sent: &Epoch, output: &Output) {
+        self.follow.epoch(now_ns, output, Some(&sent.sample));
+    }
+
+    /// Notes an answer to an altered epoch, or an epoch without an answer: answers around it aren't compared.
+    #[inline]
+    pub(super) fn altered(&mut self) {
+        self.follow.altered();
+    }
+
+    /// Number of steps of the solution where a correction was at work.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.follow.steps()
     }
 
     /// Checks parameters that came with an answer; true if they may count.

@@ -2,9 +2,11 @@
 
 use super::solution::errors;
 use octant_earth::ellipsoid::Ellipsoid;
-use octant_sample::{Mode, Output, Truth};
+use octant_endpoint::Tells;
+use octant_sample::{Mode, Navigation, Output, Truth};
 use octant_score::attitude::CaseAngles;
 use octant_score::drift::{DriftSample, DriftScorer};
+use octant_score::every_answer::{AnsweredSolution, StandingTruth};
 use octant_score::run_series::SolutionSeries;
 
 /// Drift of the last navigation; one before it doesn't count.
@@ -74,6 +76,43 @@ impl NavigationDrift {
         Some(sample)
     }
 
+    /// Takes the truth at an answer, with which those after it are compared as long as it stands.
+    pub(super) fn stand(&mut self, tells: Tells, truth: &Truth) {
+        if self.start_ns.is_some() {
+            self.scorer.stand(Some(standing(tells, truth)));
+        }
+    }
+
+    /// Returns whether the truth is that at the answer before.
+    pub(super) fn is_at(&self, tells: Tells, truth: &Truth) -> bool {
+        self.scorer.stands_at(&standing(tells, truth))
+    }
+
+    /// Forgets the truth at the answer before: an epoch that isn't compared lies between.
+    #[inline]
+    pub(super) fn lost(&mut self) {
+        if self.scorer.has_truth() {
+            self.scorer.stand(None);
+        }
+    }
+
+    /// Takes an answer between two that are scored in full, at the truth of the answer before; false if there is none.
+    #[inline(always)]
+    pub(super) fn between(&mut self, output: &Output) -> bool {
+        let Some(start_ns) = self.start_ns.filter(|_| self.scorer.has_truth()) else {
+            return false;
+        };
+        let since_ns = output.device_time.ns.saturating_sub(start_ns);
+        self.scorer.between(since_ns, &answered(output));
+        true
+    }
+
+    /// Returns whether an answer between two that are scored in full is to be compared with its truth, which moves.
+    #[inline(always)]
+    pub(super) fn strays(&mut self, output: &Output) -> bool {
+        self.start_ns.is_some() && self.scorer.strays(&answered(output))
+    }
+
     /// Returns the drift so far; `None` without navigation or without truth.
     #[must_use]
     pub fn scored(&self) -> Option<&DriftScorer> {
@@ -85,6 +124,27 @@ impl NavigationDrift {
     pub fn start_h(&self) -> Option<f64> {
         self.start_ns.map(|ns| ns as f64 / 3.6e12)
     }
+}
+
+/// Truth with which answers are compared.
+fn standing(tells: Tells, truth: &Truth) -> StandingTruth {
+    let told = |tells: bool, value: f64| if tells { value } else { f64::NAN };
+    let [north, east, _] = truth.velocity_mps;
+    let right = AnsweredSolution {
+        latitude_rad: truth.latitude_rad,
+        longitude_rad: truth.longitude_rad,
+        velocity_mps: [north, east].map(|value| told(tells.velocity, value)),
+        q_nb: truth.q_nb.map(|value| told(tells.attitude, value)),
+    };
+    StandingTruth::new(&right, truth.height_m, truth.gimbal_rad)
+}
+
+/// Solution of an answer.
+#[inline(always)]
+fn answered(output: &Output) -> AnsweredSolution {
+    let Navigation { latitude_rad, longitude_rad, velocity_mps: [north, east, _], q_nb, .. } =
+        output.navigation;
+    AnsweredSolution { latitude_rad, longitude_rad, velocity_mps: [north, east], q_nb }
 }
 
 /// Largest changes of the truth so far.

@@ -15,6 +15,7 @@ pub mod convergence;
 pub mod done;
 pub mod drift;
 pub mod filtered;
+mod fit;
 pub mod follow;
 pub mod gimbals;
 pub mod heading;
@@ -85,6 +86,8 @@ struct Now {
     mode: Mode,
     next_score_ns: u64,
     score_period_ns: u64,
+    /// True if the last answer counts for the maxima of the navigation alone.
+    between: bool,
 }
 
 impl Now {
@@ -124,6 +127,7 @@ impl Observers {
             last_ns: 0,
             mode: Mode::default(),
             next_score_ns: 0,
+            between: false,
             // A solution from elsewhere may jump between two seconds.
             score_period_ns: if follows { SCORE_PERIOD_NS } else { 1 },
         };
@@ -191,19 +195,53 @@ impl Observers {
     /// Takes the answer to an epoch as it reached the unit; returns true if truth at it is needed.
     #[inline]
     pub fn answer(&mut self, sent: &Epoch, altered: bool, output: &Output) -> bool {
+        self.now.between = false;
         if !self.answers.answer(sent, output) {
             return false;
         }
         let now_ns = self.now.source.unwrap_or(output.device_time).ns;
         self.done.epoch(now_ns, output);
-        if !altered {
-            self.answers.follow(now_ns, output);
+        if altered {
+            self.answers.altered();
+        } else {
+            self.answers.follow(now_ns, sent, output);
         }
         let due = self.epoch(output);
         if due {
             self.moments.due(sent, output);
+        } else {
+            self.now.between = output.mode == Mode::Navigating;
         }
         due
+    }
+
+    /// Takes the last answer for the maxima of the navigation, which are over every answer, where its errors aren't
+    /// scored in full; `stands` says whether the truth is that at the answer before, and `None` that it has to be
+    /// compared. Returns true if truth at it is needed.
+    #[inline(always)]
+    pub fn between(&mut self, output: &Output, stands: impl FnOnce() -> Option<bool>) -> bool {
+        if !self.now.between {
+            return false;
+        }
+        match stands() {
+            Some(true) => {
+                self.drift.between(output);
+                false
+            }
+            Some(false) => self.strays(output),
+            None => true,
+        }
+    }
+
+    /// Returns whether an answer at a truth that moves is to be compared with it.
+    #[inline(always)]
+    fn strays(&mut self, output: &Output) -> bool {
+        let strays = self.drift.strays(output);
+        if !strays {
+            // The truth moves on, and isn't known from here.
+            self.drift.lost();
+        }
+        strays
     }
 
     /// Takes an output that answers no sample, or one that isn't known any more; returns true if
@@ -268,6 +306,21 @@ impl Observers {
         }
     }
 
+    /// Notes an epoch of the source that no answer follows, or none yet.
+    pub(crate) fn lost(&mut self) {
+        self.drift.lost();
+        self.answers.altered();
+    }
+
+    /// Takes the truth at an answer that asked for it in [`Self::between`].
+    pub fn truth_between(&mut self, output: &Output, truth: &Truth, stands: Option<bool>) {
+        let same = stands.is_none() && self.drift.is_at(self.tells, truth);
+        if same || stands.is_some() || self.strays(output) {
+            self.drift.stand(self.tells, truth);
+            self.drift.between(output);
+        }
+    }
+
     /// Takes the truth of the last epoch.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
         if let Some(heading) = &mut self.heading {
@@ -281,6 +334,7 @@ impl Observers {
             filtered.errors(output, errors(attitude_error, velocity_error_mps));
         }
         let sample = self.drift.truth(output, truth, attitude_error, velocity_error_mps);
+        self.drift.stand(self.tells, truth);
         if let (Some(trace), Some(sample)) = (&mut self.trace, sample) {
             trace.drift(sample.t_s, sample.latitude_error_rad, sample.longitude_error_rad);
         }

@@ -94,6 +94,11 @@ impl Source for WatchedSource {
         self.source.truth()
     }
 
+    #[inline]
+    fn truth_stands(&self) -> Option<bool> {
+        self.source.truth_stands()
+    }
+
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
         self.source.temperature_c()
     }

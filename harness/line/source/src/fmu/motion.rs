@@ -319,6 +319,11 @@ impl Source for MovedPlant {
         Some(self.plant.plant().truth())
     }
 
+    #[inline]
+    fn truth_stands(&self) -> Option<bool> {
+        Some(self.plant.plant().stands())
+    }
+
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
         Ok(Some(self.plant.plant().temperature_c()))
     }

@@ -83,6 +83,30 @@ attacks! {
     answers_late_by_one: "order", "answers each sample with what it should have answered to the one before",
         fails("the answer to sample 2: sequence is 1, expected 2"),
         answer(|t| if let Some(before) = t.before.last() { *t.output = *before });
+    nine_of_ten_elsewhere: "content", "nine of ten answers 60 nmi away, at 1000 m/s; the one of each second is right",
+        fails("NEAR"),
+        answer(|t| if t.k > CALIBRATION && !t.k.is_multiple_of(10) {
+            t.output.navigation.latitude_rad += 1.0_f64.to_radians();
+            t.output.navigation.velocity_mps[0] += 1000.0;
+        });
+    once_elsewhere: "content", "one answer of all 2 nmi away, between two seconds", fails("NEAR"),
+        answer(|t| if t.k == MIDDLE + 13 { t.output.navigation.latitude_rad += (2.0_f64 / 60.0).to_radians() });
+    jumps_within_its_limits: "content", "a position that jumps by 500 m and stays there",
+        open("the position of the navigation doesn't fit its velocity: 1 answer, the first one at 24.260 s off by 5"),
+        answer(|t| if t.k >= MIDDLE + 13 { t.output.navigation.latitude_rad += 500.0 / 6.37e6 });
+    velocity_of_another: "content", "a velocity of 30 m/s that its position doesn't have",
+        open("the position of the navigation doesn't fit its velocity"),
+        answer(|t| if t.k >= CALIBRATION { t.output.navigation.velocity_mps[1] += 30.0 });
+    turns_at_once: "content", "an attitude that turns by a degree from one answer to the next",
+        open("the attitude of the navigation doesn't fit the gyros: 1 answer, the first one at 24.260 s"),
+        answer(|t| if t.k >= MIDDLE + 13 {
+            let [w, x, y, z] = t.output.navigation.q_nb;
+            let (s, c) = 0.5_f64.to_radians().sin_cos();
+            t.output.navigation.q_nb = [c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w];
+        });
+    height_of_another: "content", "a height that rises by 100 m at once",
+        open("the height of the navigation doesn't fit its velocity: 1 answer, the first one at 24.260 s off by 100"),
+        answer(|t| if t.k >= MIDDLE + 13 { t.output.navigation.height_m += 100.0 });
     latitude_nan: "content", "a latitude that is NaN", fails("navigation.latitude_rad is NaN"),
         answer(|t| if t.k == MIDDLE { t.output.navigation.latitude_rad = f64::NAN });
     latitude_nan_at_first: "content", "NaN in its first answer alone",

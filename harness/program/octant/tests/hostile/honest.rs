@@ -135,6 +135,30 @@ honest! {
     no_silence_of_its_own: "no time after which it gives the harness up", Twist { silence_ms: 0, ..HONEST };
 }
 
+/// Navigations that are long enough for a unit that answers anew every so many seconds.
+#[test]
+fn units_that_answer_anew_every_2_10_and_50_seconds() {
+    fn every<const SECONDS: u64>(t: &mut Turn<'_>) {
+        let last = t.k - t.k % (SECONDS * SECOND);
+        if t.k > CALIBRATION && t.k > last && last >= CALIBRATION {
+            t.output.navigation = t.before[last as usize - 1].navigation;
+        }
+    }
+    let long = |seconds: u64| {
+        let more = super::unit::SCENARIO
+            .replace("duration = \"10 s\"", &format!("duration = \"{seconds} s\""));
+        octant_scenario::Scenario::parse(&more, "hostile.toml", std::path::Path::new(""), &[])
+            .unwrap()
+    };
+    for (seconds, answer) in
+        [(20, every::<2> as fn(&mut Turn<'_>)), (60, every::<10>), (300, every::<50>)]
+    {
+        let summary = run_of(&long(seconds), Over::Udp, Twist { answer, ..HONEST }).unwrap();
+        assert_eq!(summary.verdict, Verdict::Pass, "{seconds} s: {:?}", summary.reasons);
+        assert!(summary.findings.is_empty(), "{:?}", summary.findings);
+    }
+}
+
 #[test]
 fn a_turn_more_of_longitude_is_not_wrapped() {
     // The error is a whole turn, which the unit may report that way: it is no violation in an

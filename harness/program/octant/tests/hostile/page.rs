@@ -69,10 +69,14 @@ fn page() -> String {
     for about in honest::list() {
         let _ = writeln!(text, "- {about}");
     }
+    text += "- a navigation that is new every 2, 10 or 50 s, in 20, 60 and 300 s\n";
     text += "\n## What no harness sees\n\n\
              A unit that computes a right navigation from other sensors than those it is given, or that replays a \
              recorded one of\nthe same scenario with the same seed, answers as a good one does. Seeds that the maker \
              doesn't know, and faults in the\nsamples, tell them apart: such a unit doesn't follow what was altered.\n\
+             Where the true position moves, answers between two seconds are compared with it only from a step of \
+             0.6 m, 0.05 m/s\nor 2 mrad on: a unit that goes away and comes back within a second in smaller steps, each \
+             of which fits its samples, isn't seen.\n\
              Uncertainties that are too large make every normalized error small: require the uncertainties \
              too\n(`calibration.parameters.gyro_bias_x.sigma`).\n";
     text

@@ -170,7 +170,8 @@ keys! {
     pub(crate) struct EarlyStopKeys {
         requirement: String = text(), required, "Id of the requirement that decides.";
         pass: f64 = probability(), "0.95", "It has to be kept with at least this probability.";
-        confidence: f64 = probability(), "0.95", "With this confidence, one-sided.";
+        confidence: f64 = number(Bounds::Within(0.5, 0.999_999, "between 0.5 and 0.999999")), "0.95",
+            "With this confidence, one-sided.";
         every: u64 = integer(1, 1_000_000), "20",
             "After how many cases, in the order of the plan, it is looked at again.";
     }

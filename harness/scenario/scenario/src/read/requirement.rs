@@ -48,6 +48,9 @@ pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Pro
         if let Some(message) = signed::one_sided(this, both) {
             return Err(keys.measure.problem(message));
         }
+        if let Some(message) = signed::unbreakable(this, requirement.check.limit) {
+            return Err(keys.measure.problem(message));
+        }
     }
     Ok(all)
 }

@@ -6,7 +6,7 @@ use crate::fields::{self, misnamed, own_fields};
 use crate::measures::without_secant;
 use crate::requirement::{
     AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
-    Parent, Requirement, Requirements, Verification, probability,
+    Parent, Requirement, Requirements, Verification, confidence, probability,
 };
 use crate::table::{Problems, Reader, schema};
 use crate::verdict::Comparison;
@@ -411,7 +411,8 @@ fn limit(table: &Reader<'_>) -> Option<Limit> {
 fn ensemble(table: &Reader<'_>) -> Option<EnsembleRequirement> {
     let part = |key: &str| {
         let text = table.line_of(key)?;
-        probability(&text).map_err(|error| table.problem(key, error.to_string())).ok()
+        let parse = if key == "confidence" { confidence } else { probability };
+        parse(&text).map_err(|error| table.problem(key, error.to_string())).ok()
     };
     let (pass, confidence) = (part("pass"), part("confidence"));
     for (key, other) in [("pass", "confidence"), ("confidence", "pass")] {

@@ -158,6 +158,13 @@ pub fn without_secant(measure: &str) -> Option<String> {
     })
 }
 
+/// Conditions without which a run doesn't have the measure at a path (without bars); none for a path that no run has.
+#[must_use]
+pub fn needs(path: &str) -> Vec<MeasureNeed> {
+    let entry = all().into_iter().find(|entry| entry.measure == path);
+    entry.map(|entry| entry.needs).unwrap_or_default()
+}
+
 /// Lists all measures, in the order of the summary.
 #[must_use]
 pub fn all() -> Vec<MeasureEntry> {

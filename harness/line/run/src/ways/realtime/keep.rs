@@ -79,5 +79,5 @@ fn answered(
 ) -> Result<(), RecorderError> {
     let Answer { output, measured, estimate, truth } = answer;
     let estimate = estimate.as_ref();
-    records.take(&Answered { step, sent, altered, output, measured, estimate }, || *truth)
+    records.take(&Answered { step, sent, altered, output, measured, estimate }, || None, || *truth)
 }
