@@ -183,7 +183,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
         assert_eq!(column("case").at(row), Some(ColumnValue::Text(case.id.as_str().into())));
         let (result, _) = kept.result(&case.id).unwrap().unwrap();
         let summary = result.summary.unwrap();
-        let radial = summary.navigation.as_ref().unwrap().radial_error_nmi.max;
+        let radial = summary.navigation.as_ref().unwrap().radial_error_nmi.unwrap().max;
         assert_eq!(
             column("navigation.radial_error_nmi.max").at(row),
             Some(ColumnValue::Number(radial))

@@ -26,6 +26,7 @@ pub mod equipment;
 mod finding;
 pub mod floor;
 mod gaps;
+pub mod heading_output;
 pub mod health;
 pub mod judge;
 pub mod junit;

@@ -12,6 +12,7 @@ mod counterfactual;
 mod drift;
 mod equipment;
 mod gaps;
+mod heading_output;
 mod health;
 mod junit;
 mod numerics;
