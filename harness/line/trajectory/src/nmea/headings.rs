@@ -67,67 +67,98 @@ enum Clock {
     Own(Days),
 }
 
-/// Finds which sentences are the headings of a file, and what tells their times.
-fn sources(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<Source, String> {
-    let chosen = choice.talker.as_deref().map(Talker::of);
-    let mut found: Vec<(Talker, u64)> = Vec::new();
-    let (mut has_mode, mut is_own) = (false, false);
-    let mut clock: Option<(Talker, bool)> = None;
-    let (mut tags, mut stamps, mut unsummed) = (0_u64, 0_u64, 0_u64);
-    while lines.advance()? && (lines.line <= LINES_TO_LOOK_AT || found.is_empty()) {
-        let Ok(framed) = Framed::of(&lines.text) else { continue };
-        match Sentence::of(&lines.text) {
-            Ok(sentence) => {
-                if let Some((talker, mode)) = heading_of(&sentence)
-                    && chosen.is_none_or(|chosen| chosen == talker)
-                {
-                    has_mode |= mode;
-                    is_own |= sentence.of_day_ns.is_some();
-                    tags += u64::from(
-                        framed.tag().is_ok_and(|tag| tag.is_some_and(|tag| tag.time_ns.is_some())),
-                    );
-                    stamps += u64::from(framed.stamp_ns().is_some());
-                    match found.iter_mut().find(|(there, _)| *there == talker) {
-                        Some((_, count)) => *count += 1,
-                        None => found.push((talker, 1)),
-                    }
-                } else if sentence.of_day_ns.is_some() {
-                    // A ZDA is there to tell the time.
-                    let better = match clock {
-                        None => true,
-                        Some((_, is_date)) => sentence.is_date_alone && !is_date,
-                    };
-                    if better {
-                        clock = Some((sentence.talker, sentence.is_date_alone));
-                    }
-                }
-            }
-            Err(reason) => unsummed += u64::from(reason == UNSUMMED),
-        }
+/// Headings of one talker at the beginning of a file, and what tells their times.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    talker: Talker,
+    is_maker: bool,
+    count: u64,
+    has_mode: bool,
+    /// Sentences with a time of their own, with one in their TAG block, and with a stamp before them.
+    own: u64,
+    tags: u64,
+    stamps: u64,
+}
+
+impl Found {
+    fn take(&mut self, sentence: &Sentence, framed: &Framed<'_>, has_mode: bool) {
+        let tag = framed.tag().ok().flatten().and_then(|tag| tag.time_ns);
+        self.count += 1;
+        self.has_mode |= has_mode;
+        self.own += u64::from(sentence.of_day_ns.is_some());
+        self.tags += u64::from(tag.is_some());
+        self.stamps += u64::from(framed.stamp_ns().is_some());
     }
-    let (talker, count) = match found[..] {
-        [one] => one,
-        [] if unsummed > 0 => {
-            return Err(super::unsummed(unsummed));
-        }
-        [] => {
-            let of = chosen.map_or_else(String::new, |talker| format!(" of talker {talker}"));
-            return Err(format!(
-                "found no sentence with a heading{of} and a right checksum, expected HDT, THS, PASHR, PSXN, PRDID or PFEC"
-            ));
-        }
-        [(one, _), (other, _), ..] => {
-            return Err(format!(
-                "found headings of {one} and of {other}, expected one instrument: say which one with the key talker, such as \
-                 talker = \"{one}\""
-            ));
+}
+
+/// The instrument of a file: the one that is chosen. A maker's sentence has no talker, and counts where the talker has none.
+fn instrument(all: &[Found], chosen: Option<Talker>, unsummed: u64) -> Result<Found, String> {
+    let named: Vec<Found> = match chosen {
+        None => all.to_vec(),
+        Some(chosen) => {
+            let of = |found: &&Found| found.talker == chosen;
+            let makers = || all.iter().filter(|found| found.is_maker).copied().collect();
+            Some(all.iter().filter(of).copied().collect::<Vec<_>>())
+                .filter(|named| !named.is_empty())
+                .unwrap_or_else(makers)
         }
     };
+    match named[..] {
+        [one] => Ok(one),
+        [] if unsummed > 0 => Err(super::unsummed(unsummed)),
+        [] => {
+            let of = chosen.map_or_else(String::new, |talker| format!(" of talker {talker}"));
+            Err(format!(
+                "found no sentence with a heading{of} and a right checksum, expected HDT, THS, PASHR, PSXN, PRDID or PFEC"
+            ))
+        }
+        [one, other, ..] => Err(format!(
+            "found headings of {} and of {}, expected one instrument: say which one with the key talker, such as talker = \"{}\"",
+            one.talker, other.talker, one.talker
+        )),
+    }
+}
+
+/// Finds which sentences are the headings of a file, and what tells their times.
+fn sources(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<Source, String> {
+    let mut all: Vec<Found> = Vec::new();
+    let mut clock: Option<(Talker, bool)> = None;
+    let mut unsummed = 0_u64;
+    while lines.advance()? && (lines.line <= LINES_TO_LOOK_AT || all.is_empty()) {
+        let Ok(framed) = Framed::of(&lines.text) else { continue };
+        let sentence = match Sentence::of(&lines.text) {
+            Ok(sentence) => sentence,
+            Err(reason) => {
+                unsummed += u64::from(reason == UNSUMMED);
+                continue;
+            }
+        };
+        if let Some((talker, has_mode)) = heading_of(&sentence) {
+            let is_maker = sentence.talker == Talker::default();
+            let new = Found { talker, is_maker, count: 0, has_mode, own: 0, tags: 0, stamps: 0 };
+            let place = all.iter().position(|found| found.talker == talker);
+            let place = place.unwrap_or_else(|| {
+                all.push(new);
+                all.len() - 1
+            });
+            all[place].take(&sentence, &framed, has_mode);
+        } else if sentence.of_day_ns.is_some() {
+            // A ZDA is there to tell the time.
+            let is_better = clock.is_none_or(|(_, is_date)| sentence.is_date_alone && !is_date);
+            if is_better {
+                clock = Some((sentence.talker, sentence.is_date_alone));
+            }
+        }
+    }
+    let found = instrument(&all, choice.talker.as_deref().map(Talker::of), unsummed)?;
+    let Found { talker, count, has_mode, own, tags, stamps, .. } = found;
+    let has_cycle = clock.is_some() || own > 0;
     let time = match choice.heading_time {
         Some(time) => time,
+        None if own > 0 => HeadingTime::Cycle,
         None if tags > 0 => HeadingTime::Tag,
         None if stamps > 0 => HeadingTime::Stamp,
-        None if clock.is_some() || is_own => HeadingTime::Cycle,
+        None if has_cycle => HeadingTime::Cycle,
         None => {
             return Err(format!(
                 "found {count} headings of {talker} and nothing that tells their times, expected a ZDA in the log, TAG blocks \
@@ -141,9 +172,7 @@ fn sources(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<Source, String>
         HeadingTime::Stamp if stamps == 0 => {
             Some("a date and time of day before the headings, such as 2027-03-31T08:00:00.5Z")
         }
-        HeadingTime::Cycle if clock.is_none() && !is_own => {
-            Some("sentences with a time of day, such as ZDA")
-        }
+        HeadingTime::Cycle if !has_cycle => Some("sentences with a time of day, such as ZDA"),
         _ => None,
     };
     match needs {
