@@ -189,16 +189,24 @@ pub struct Tells {
     pub position: bool,
     /// Velocity over ground.
     pub velocity: bool,
-    /// Attitude.
+    /// Attitude, or the heading alone.
     pub attitude: bool,
+    /// Roll and pitch of the attitude.
+    pub tilt: bool,
     /// True if the answers are computed from the samples of the run, which they then have to follow.
     pub follows: bool,
 }
 
 impl Tells {
     /// All quantities.
-    pub const ALL: Self =
-        Self { commands: true, position: true, velocity: true, attitude: true, follows: true };
+    pub const ALL: Self = Self {
+        commands: true,
+        position: true,
+        velocity: true,
+        attitude: true,
+        tilt: true,
+        follows: true,
+    };
 }
 
 /// Statement of a core at the end of a run, as far as its realisation provides one.

@@ -5,6 +5,7 @@ use octant_sample::parameters::{PARAMETER_COUNT, ParameterEstimate};
 use octant_sample::{Epoch, Health, Mode, Output, Parameters};
 use octant_scenario::Scenario;
 use octant_scenario::trajectory::SolutionSpec;
+use octant_trajectory::point::{GeodeticPosition, PointAttitude};
 use octant_trajectory::track::q_nc;
 use octant_trajectory::{PairsError, SolutionPair, SolutionPairs};
 
@@ -13,6 +14,8 @@ pub struct SolutionEndpoint {
     pairs: SolutionPairs,
     file: String,
     last: Option<Output>,
+    /// Where an instrument is whose position isn't compared.
+    site: GeodeticPosition,
 }
 
 impl SolutionEndpoint {
@@ -25,7 +28,12 @@ impl SolutionEndpoint {
         let (folder, period_ns) = (&*scenario.folder, scenario.sample_period_ns);
         let site_rad = [scenario.site.latitude_rad, scenario.site.longitude_rad];
         let pairs = SolutionPairs::open(spec, (folder, site_rad), period_ns, duration_s)?;
-        Ok(Self { pairs, file: spec.solution.file.0.clone(), last: None })
+        let site = GeodeticPosition {
+            latitude_rad: scenario.site.latitude_rad,
+            longitude_rad: scenario.site.longitude_rad,
+            height_m: scenario.site.height_m,
+        };
+        Ok(Self { pairs, file: spec.solution.file.0.clone(), last: None, site })
     }
 
     fn gone(&self, reason: String) -> EndpointError {
@@ -46,12 +54,15 @@ impl Endpoint for SolutionEndpoint {
         (answer.sequence, answer.device_time) = (sequence, stamp);
         (answer.nis, answer.health) = (f64::NAN, Health::empty());
         let navigation = &mut answer.navigation;
-        navigation.latitude_rad = solution.latitude_rad;
-        navigation.longitude_rad = solution.longitude_rad;
-        navigation.height_m = solution.height_m;
+        let [is_compared, _] = self.pairs.compares();
+        let position = solution.position.filter(|_| is_compared).unwrap_or(self.site);
+        navigation.latitude_rad = position.latitude_rad;
+        navigation.longitude_rad = position.longitude_rad;
+        navigation.height_m = position.height_m;
         let [north, east] = solution.velocity_mps.unwrap_or_default();
         navigation.velocity_mps = [north, east, 0.0];
-        let q = solution.attitude_rad.map(q_nc).unwrap_or_default();
+        let attitude = solution.attitude.map(PointAttitude::or_level_rad);
+        let q = attitude.map(q_nc).unwrap_or_default();
         navigation.q_nb = [q.w, q.i, q.j, q.k];
         *output = answer;
         self.last = Some(answer);
@@ -60,11 +71,13 @@ impl Endpoint for SolutionEndpoint {
 
     fn tells(&self) -> Tells {
         let survey = self.pairs.survey();
+        let [position, tilt] = self.pairs.compares();
         Tells {
             commands: false,
-            position: true,
+            position,
             velocity: survey.velocity,
             attitude: survey.attitude,
+            tilt,
             follows: false,
         }
     }

@@ -245,8 +245,8 @@ fn maxima_are_over_every_answer_and_never_against_a_truth_that_moved_on() {
     assert!(asked.iter().all(|n| (12..=31).contains(n)), "{asked:?}");
     let score = observers.drift.scored().unwrap();
     let score = score.finish(octant_score::summary::HeightChannel::Held).unwrap();
-    let arcmin = score.latitude_error_arcmin.max * std::f64::consts::PI / 180.0 / 60.0;
+    let arcmin = score.latitude_error_arcmin.unwrap().max * std::f64::consts::PI / 180.0 / 60.0;
     assert!((arcmin - 1e-3).abs() < 1e-7, "{arcmin}");
-    let rms = score.latitude_error_arcmin.rms * std::f64::consts::PI / 180.0 / 60.0;
+    let rms = score.latitude_error_arcmin.unwrap().rms * std::f64::consts::PI / 180.0 / 60.0;
     assert!(rms < 1e-7, "the answer between two seconds is in the maximum alone: {rms}");
 }

@@ -7,6 +7,7 @@ use octant_sample::time::SimulatedTime;
 use octant_sample::{DeviceTime, GimbalCommand, Sample, Status};
 use octant_scenario::Scenario;
 use octant_scenario::trajectory::SolutionSpec;
+use octant_trajectory::point::GeodeticPosition;
 use octant_trajectory::{Comparison, PairsError, SolutionPair, SolutionPairs};
 
 /// The reference at the times of a solution.
@@ -55,11 +56,19 @@ impl Source for SolutionSource {
         let SolutionPair { time_ns, reference, .. } = self.last?;
         let [north, east] = reference.velocity_mps.unwrap_or([f64::NAN; 2]);
         let q_nb = reference.q_nc.map_or([f64::NAN; 4], |q| [q.w, q.i, q.j, q.k]);
+        let unknown = GeodeticPosition {
+            latitude_rad: f64::NAN,
+            longitude_rad: f64::NAN,
+            height_m: f64::NAN,
+        };
+        let [is_compared, _] = self.pairs.compares();
+        let GeodeticPosition { latitude_rad, longitude_rad, height_m } =
+            reference.position.filter(|_| is_compared).unwrap_or(unknown);
         Some(Truth {
             time: SimulatedTime::from_ns(time_ns),
-            latitude_rad: reference.latitude_rad,
-            longitude_rad: reference.longitude_rad,
-            height_m: reference.height_m,
+            latitude_rad,
+            longitude_rad,
+            height_m,
             velocity_mps: [north, east, f64::NAN],
             q_nb,
             gimbal_rad: [0.0; 2],

@@ -19,7 +19,11 @@ fn csv() -> TrajectoryFormat {
 }
 
 fn nmea(talker: Option<&str>, fixes_alone: bool) -> TrajectoryFormat {
-    TrajectoryFormat::Nmea(NmeaChoice { talker: talker.map(str::to_owned), fixes_alone })
+    TrajectoryFormat::Nmea(NmeaChoice {
+        talker: talker.map(str::to_owned),
+        fixes_alone,
+        ..NmeaChoice::default()
+    })
 }
 
 /// A sentence with its checksum.
@@ -117,7 +121,7 @@ fn a_talker_is_chosen_and_others_are_counted() {
     assert!(refused.contains("the key talker, such as talker = \"IN\""), "{refused}");
     let first = |talker: &str| {
         let mut reader = TrajectoryReader::open(&path, &nmea(Some(talker), false)).unwrap();
-        reader.next().unwrap().unwrap().latitude_rad.to_degrees()
+        reader.next().unwrap().unwrap().position.unwrap().latitude_rad.to_degrees()
     };
     assert!((first("GP") - (60.0 + 10.0 / 60.0)).abs() < 1e-12);
     assert!((first("IN") - (60.0 + 10.0065 / 60.0)).abs() < 1e-12);

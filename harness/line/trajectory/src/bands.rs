@@ -1,7 +1,7 @@
 //! What the standard deviations that a reference states leave open of the largest, mean and last errors.
 
 /// Standard deviations in an expanded uncertainty (95 %).
-const EXPANDED: f64 = 1.96;
+pub(crate) const EXPANDED: f64 = 1.96;
 
 /// Uncertainty of one error by the reference's own standard deviations, as far as it has some.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,8 @@
 //! Columns of text.
 
-use super::point::{LINE_BYTES_MAX, PointSigma, Points, TimeScale, TrajectoryPoint};
+use super::point::{
+    GeodeticPosition, LINE_BYTES_MAX, PointAttitude, PointSigma, Points, TimeScale, TrajectoryPoint,
+};
 use super::tally::Tally;
 use csv::StringRecord;
 use octant_base::decimal::decimal_ns;
@@ -181,12 +183,12 @@ impl Points for ColumnsReader {
         self.lines.tally.point(1);
         Ok(Some(TrajectoryPoint {
             time_ns,
-            latitude_rad,
-            longitude_rad,
-            height_m,
+            position: Some(GeodeticPosition { latitude_rad, longitude_rad, height_m }),
             velocity_mps,
-            attitude_rad,
+            attitude: attitude_rad.map(PointAttitude::of),
             sigma: PointSigma::default(),
+            digit_rad: [0.0; 3],
+            attitude_doubt_s: 0.0,
         }))
     }
 

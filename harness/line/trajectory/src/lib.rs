@@ -2,8 +2,8 @@
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`point`] | a position with velocity and attitude at a time, and the scale of that time |
-//! | [`reader`] | files: columns of text, NMEA 0183, RTKLIB, SBET, messages of units |
+//! | [`point`] | a position with velocity and attitude at a time, or a heading alone, and the scale of that time |
+//! | [`reader`] | files: columns of text, NMEA 0183 with positions or headings alone, RTKLIB, SBET, messages of units |
 //! | [`survey`] | what a file holds, from one pass through it |
 //! | [`track`] | a reference trajectory at any time |
 //! | [`pairs`] | the points of a solution, each with its reference |
@@ -17,6 +17,8 @@ mod bands;
 mod columns;
 pub mod comparison;
 mod gaps;
+#[cfg(test)]
+mod heading_tests;
 mod likeness;
 mod messages;
 mod nmea;

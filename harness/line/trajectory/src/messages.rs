@@ -3,7 +3,9 @@
 //! Messages of one time belong to one point. Once a unit knows GPS time or UTC its points have that; those before, which have
 //! its own clock alone, are left out, and so is what has no position that is valid. A unit that never knows it has a scale of its own.
 
-use super::point::{PointSigma, Points, TimeScale, TrajectoryPoint, gps_to_utc_ns};
+use super::point::{
+    GeodeticPosition, PointAttitude, PointSigma, Points, TimeScale, TrajectoryPoint, gps_to_utc_ns,
+};
 use super::tally::{OUT_OF_ORDER, Tally};
 use octant_instruments::FramingEvent;
 use octant_instruments::navigation::{
@@ -169,16 +171,20 @@ fn point(begun: &Begun) -> Option<TrajectoryPoint> {
     let horizontal = |[north, east, _]: [f64; 3]| [north, east];
     Some(TrajectoryPoint {
         time_ns,
-        latitude_rad,
-        longitude_rad,
-        height_m: reading.height_m.unwrap_or(0.0),
+        position: Some(GeodeticPosition {
+            latitude_rad,
+            longitude_rad,
+            height_m: reading.height_m.unwrap_or(0.0),
+        }),
         velocity_mps: reading.velocity_mps.map(horizontal),
-        attitude_rad: reading.attitude_rad,
+        attitude: reading.attitude_rad.map(PointAttitude::of),
         sigma: PointSigma {
             position_m: reading.sigma.position_m.map(horizontal),
             velocity_mps: reading.sigma.velocity_mps.map(horizontal),
             attitude_rad: reading.sigma.attitude_rad,
         },
+        digit_rad: [0.0; 3],
+        attitude_doubt_s: 0.0,
     })
 }
 
@@ -326,10 +332,12 @@ mod tests {
         let midnight = octant_base::utc::parse("2024-12-19T00:00:00Z").unwrap();
         let ns = midnight.duration_since(std::time::UNIX_EPOCH).unwrap().as_nanos() as i64;
         assert_eq!(survey.first.time_ns, ns + 1_000_000_000 - 18_000_000_000);
-        assert_eq!(survey.first.height_m, 100.25);
+        assert_eq!(survey.first.position.unwrap().height_m, 100.25);
         assert_eq!(survey.first.velocity_mps, Some([1.5, -2.25]));
-        assert!((survey.first.latitude_rad.to_degrees() - 53.000_001).abs() < 1e-10);
-        assert_eq!(survey.first.attitude_rad, Some([2.0, -3.0, 271.5].map(f64::to_radians)));
+        assert!(
+            (survey.first.position.unwrap().latitude_rad.to_degrees() - 53.000_001).abs() < 1e-10
+        );
+        assert_eq!(survey.first.attitude_rad(), Some([2.0, -3.0, 271.5].map(f64::to_radians)));
     }
 
     #[test]

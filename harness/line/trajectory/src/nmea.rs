@@ -11,18 +11,31 @@
 //! Several talkers may give the same quantity at the same time, as the parts of one receiver do. Where they differ by more
 //! than their last digits, they are different instruments, and the file is refused with their names, unless one is chosen.
 //!
+//! HDT, THS and makers' sentences with a heading have no time, too: the first behind a position, or behind another sentence
+//! of its time, is that of the position. [`headings`] reads headings alone, each as a point.
+//!
 //! Each line is counted: it belongs to a point, or is left out for a reason. A sentence of a time before the present point, as a
 //! logger writes it that was late, is left out.
 
+mod clock;
+mod framed;
+mod heading;
+mod headings;
+mod lines;
 mod sentence;
+mod velocity;
 
+use self::heading::{ESTIMATED_HEADING, HeadingSaid, PsxnQuality};
+use self::headings::HeadingReader;
+use self::lines::NmeaLines;
 use self::sentence::{Said, Sentence, Talker, UNSUMMED};
-use super::point::{LINE_BYTES_MAX, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint};
+use self::velocity::velocity_leads;
+use super::point::{
+    GeodeticPosition, PointAttitude, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint,
+};
 use super::tally::{OUT_OF_ORDER, Tally};
-use octant_earth::ellipsoid::Ellipsoid;
-use octant_scenario::trajectory::NmeaChoice;
+use octant_scenario::trajectory::{NmeaChoice, NmeaPoints};
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek};
 
 const DAY_NS: i64 = 86_400 * SECOND_NS;
 /// Radius for distances in messages, m.
@@ -30,8 +43,6 @@ const EARTH_RADIUS_M: f64 = 6.371e6;
 
 /// Lines within which a file has to show what it is.
 const LINES_TO_LOOK_AT: u64 = 10_000;
-/// Fewest velocities that tell to which positions they belong.
-const VELOCITIES_LEAST: u32 = 5;
 
 pub(crate) struct NmeaReader {
     lines: NmeaLines,
@@ -46,6 +57,9 @@ pub(crate) struct NmeaReader {
     velocity_leads: bool,
     waits: Option<Said<2>>,
     heard_ns: Option<i64>,
+    /// Time between the last two points: a heading without a time is off by less.
+    apart_ns: Option<i64>,
+    quality: PsxnQuality,
     tally: Tally,
 }
 
@@ -61,6 +75,7 @@ struct Begun {
     height_m: Option<Said<1>>,
     velocity_mps: Option<Said<2>>,
     attitude_rad: Option<Said<3>>,
+    heading: Option<HeadingSaid>,
     sigma_m: Option<[f64; 2]>,
     attitude_sigma_rad: Option<[f64; 3]>,
     quality: Option<&'static str>,
@@ -69,20 +84,57 @@ struct Begun {
 const OTHER_TALKERS: &str = "sentences of other talkers";
 const ESTIMATED: &str = "sentences with an estimated position, which is no fix";
 const FURTHER: &str = "velocities without a time, besides the first of their position";
+const FURTHER_HEADING: &str = "headings without a time, besides the first behind their position";
 const NO_POSITION: &str = "sentences of times without a position";
+
+/// Opens a file: its positions make a point each, or its headings.
+///
+/// # Errors
+/// If it has none, or nothing tells their times.
+pub(crate) fn open(file: File, choice: &NmeaChoice) -> Result<Box<dyn Points>, String> {
+    let mut lines = NmeaLines::new(file);
+    let points = match choice.points {
+        Some(points) => points,
+        None => points(&mut lines)?.unwrap_or(match choice.heading_time {
+            Some(_) => NmeaPoints::Headings,
+            None => NmeaPoints::Positions,
+        }),
+    };
+    let file = lines.again()?.into_file();
+    if points == NmeaPoints::Headings {
+        return Ok(Box::new(HeadingReader::new(file, choice)?));
+    }
+    if choice.heading_time.is_some() {
+        return Err("found positions, each with the heading behind it, and a time for headings alone, expected points = \
+                    \"headings\" or no heading_time and no heading_rate"
+            .to_owned());
+    }
+    Ok(Box::new(NmeaReader::new(file, choice)?))
+}
+
+/// Sentences of a file that make a point each: positions, where it has some. `None`: it has neither positions nor headings.
+fn points(lines: &mut NmeaLines) -> Result<Option<NmeaPoints>, String> {
+    let mut found = None;
+    while lines.advance()? && lines.line <= LINES_TO_LOOK_AT {
+        let Ok(sentence) = Sentence::of(&lines.text) else { continue };
+        if sentence.tells_position {
+            return Ok(Some(NmeaPoints::Positions));
+        }
+        if sentence.heading_talker.is_some() || sentence.attitude_rad.is_some() {
+            found = Some(NmeaPoints::Headings);
+        }
+    }
+    Ok(found)
+}
 
 impl NmeaReader {
     pub(crate) fn new(file: File, choice: &NmeaChoice) -> Result<Self, String> {
         let mut lines = NmeaLines::new(file);
         let first_day_ns = first_day(&mut lines)?;
-        let mut file = lines.file.into_inner();
-        file.rewind().map_err(|error| error.to_string())?;
-        let mut lines = NmeaLines::new(file);
+        let mut lines = lines.again()?;
         let velocity_leads = velocity_leads(&mut lines, choice)?;
-        let mut file = lines.file.into_inner();
-        file.rewind().map_err(|error| error.to_string())?;
         Ok(Self {
-            lines: NmeaLines::new(file),
+            lines: lines.again()?,
             choice: choice.clone(),
             day_ns: first_day_ns,
             last_of_day_ns: None,
@@ -91,6 +143,8 @@ impl NmeaReader {
             velocity_leads,
             waits: None,
             heard_ns: None,
+            apart_ns: None,
+            quality: PsxnQuality::default(),
             tally: Tally::default(),
         })
     }
@@ -116,7 +170,18 @@ impl NmeaReader {
     /// # Errors
     /// If its talker contradicts another one.
     fn take(&mut self, sentence: Sentence) -> Result<Option<TrajectoryPoint>, String> {
-        let sentence = chosen(sentence, &self.choice);
+        let mut sentence = chosen(sentence, &self.choice);
+        if let Some(quality) = sentence.heading_quality {
+            self.quality.take(quality);
+            self.tally.used(1);
+            return Ok(None);
+        }
+        if let Some(said) = sentence.heading {
+            match self.quality.judged(said) {
+                Ok(said) => sentence.heading = Some(said),
+                Err(reason) => sentence = sentence.without(reason),
+            }
+        }
         let mut ended = None;
         if let Some(of_day_ns) = sentence.of_day_ns {
             let day_ns = self.day_of(&sentence, of_day_ns);
@@ -163,7 +228,7 @@ impl NmeaReader {
             }
         } else if let Some(reason) = sentence.left_out {
             self.leave_out(reason);
-        } else if self.velocity_leads {
+        } else if self.velocity_leads && sentence.velocity_mps.is_some() {
             if self.waits.take().is_some() {
                 self.leave_out(NO_POSITION);
             }
@@ -176,6 +241,7 @@ impl NmeaReader {
             Some(begun) if sentence.of_day_ns.is_none() && begun.has_velocity_of(&sentence) => {
                 self.leave_out(FURTHER);
             }
+            Some(begun) if begun.has_heading_of(&sentence) => self.leave_out(FURTHER_HEADING),
             Some(begun) => begun.take(&sentence)?,
             None => self.leave_out(NO_POSITION),
         }
@@ -191,8 +257,12 @@ impl NmeaReader {
         };
         self.tally.point(begun.sentences);
         self.tally.quality(begun.quality.unwrap_or("no stated mode"));
+        self.apart_ns = self.given_ns.map(|given_ns| point.time_ns - given_ns).or(self.apart_ns);
         self.given_ns = Some(point.time_ns);
-        Some(point)
+        // Where within a cycle its instrument measured isn't known.
+        let is_timed = begun.heading.is_none() || begun.attitude_rad.is_some();
+        let doubt_ns = self.apart_ns.filter(|_| !is_timed).unwrap_or(0);
+        Some(TrajectoryPoint { attitude_doubt_s: doubt_ns as f64 * 1e-9, ..point })
     }
 }
 
@@ -212,7 +282,11 @@ fn chosen(sentence: Sentence, choice: &NmeaChoice) -> Sentence {
         let sentence = sentence.without(OTHER_TALKERS);
         return Sentence { is_date_alone: date, ..sentence };
     }
-    if choice.fixes_alone && sentence.is_estimated { sentence.without(ESTIMATED) } else { sentence }
+    match sentence.heading {
+        _ if !(choice.fixes_alone && sentence.is_estimated) => sentence,
+        Some(_) => sentence.without(ESTIMATED_HEADING),
+        None => sentence.without(ESTIMATED),
+    }
 }
 
 impl Begun {
@@ -239,6 +313,7 @@ impl Begun {
             let most = (0..3).map(|axis| (one.value[axis] - other.value[axis]).abs());
             format!("{:.3} deg", most.fold(0.0, f64::max).to_degrees())
         })?;
+        HeadingSaid::keep(&mut self.heading, sentence.heading)?;
         self.sigma_m = self.sigma_m.or(sentence.sigma_m);
         self.attitude_sigma_rad = self.attitude_sigma_rad.or(sentence.attitude_sigma_rad);
         self.quality = self.quality.or(sentence.quality);
@@ -251,9 +326,24 @@ impl Begun {
         both.is_some_and(|(there, said)| there.is_of_source(&said))
     }
 
+    /// Returns whether it has a heading of the same instrument.
+    fn has_heading_of(&self, sentence: &Sentence) -> bool {
+        let both = self.heading.zip(sentence.heading);
+        both.is_some_and(|(there, said)| {
+            there.talker == said.talker && !(said.has_mode && !there.has_mode)
+        })
+    }
+
     /// The point, where it has a position.
     fn point(&self) -> Option<TrajectoryPoint> {
         let [latitude_rad, longitude_rad] = self.position?.value;
+        let height_m = self.height_m.map_or(0.0, |height| height.value[0]);
+        // An attitude with a time counts before a heading without one.
+        let (attitude, digit_rad) = match (self.attitude_rad, self.heading) {
+            (Some(said), _) => (Some(PointAttitude::of(said.value)), said.resolution),
+            (None, Some(said)) => (Some(said.attitude()), said.digit_rad),
+            (None, None) => (None, [0.0; 3]),
+        };
         let sigma = PointSigma {
             position_m: self.sigma_m,
             velocity_mps: None,
@@ -261,12 +351,12 @@ impl Begun {
         };
         Some(TrajectoryPoint {
             time_ns: self.time_ns,
-            latitude_rad,
-            longitude_rad,
-            height_m: self.height_m.map_or(0.0, |height| height.value[0]),
+            position: Some(GeodeticPosition { latitude_rad, longitude_rad, height_m }),
             velocity_mps: self.velocity_mps.map(|velocity| velocity.value),
-            attitude_rad: self.attitude_rad.map(|attitude| attitude.value),
+            attitude,
             sigma,
+            digit_rad,
+            attitude_doubt_s: 0.0,
         })
     }
 }
@@ -336,9 +426,17 @@ impl Points for NmeaReader {
     }
 }
 
+/// Words for sentences without checksums.
+fn unsummed(unsummed: u64) -> String {
+    format!(
+        "found {unsummed} sentences without a checksum, expected each to end in * and two hexadecimal digits, the exclusive or of \
+         the characters between $ and *: have the receiver or the logger write them; without, a damaged sentence can't be told"
+    )
+}
+
 /// Finds the day of the first point.
 fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
-    let mut first_ns = None;
+    let mut first_ns: Option<i64> = None;
     let (mut sentences, mut unsummed) = (0_u64, 0_u64);
     while lines.advance()? && (sentences > 0 || lines.line <= LINES_TO_LOOK_AT) {
         let sentence = match Sentence::of(&lines.text) {
@@ -349,111 +447,20 @@ fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
             }
         };
         sentences += 1;
-        let first_ns = *first_ns.get_or_insert(sentence.of_day_ns.unwrap_or_default());
+        first_ns = first_ns.or(sentence.of_day_ns);
         if let (Some(day_ns), Some(of_day_ns)) = (sentence.day_ns, sentence.of_day_ns) {
+            let first_ns = first_ns.unwrap_or(of_day_ns);
             // Sentences of the evening may come before the first date of the next morning.
             let evening = of_day_ns + DAY_NS / 2 < first_ns;
             return Ok(if evening { day_ns - DAY_NS } else { day_ns });
         }
     }
     Err(if sentences == 0 && unsummed > 0 {
-        format!(
-            "found {unsummed} sentences without a checksum, expected each to end in * and two hexadecimal digits, the exclusive or of \
-             the characters between $ and *: have the receiver or the logger write them; without, a damaged sentence can't be told"
-        )
+        self::unsummed(unsummed)
     } else if sentences == 0 {
         "found no sentence of NMEA 0183 with a position, a speed or an attitude, and a right checksum"
             .to_owned()
     } else {
         format!("found {sentences} sentences and no date, expected an RMC or a ZDA")
     })
-}
-
-/// Learns whether the velocities without a time belong to the positions after them: those of the positions before and after
-/// each tell.
-fn velocity_leads(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<bool, String> {
-    let mut points: Vec<(i64, [f64; 2])> = Vec::new();
-    // Velocities with the number of points before them.
-    let mut velocities: Vec<(usize, [f64; 2])> = Vec::new();
-    while lines.advance()? && lines.line <= LINES_TO_LOOK_AT {
-        let Ok(sentence) = Sentence::of(&lines.text) else { continue };
-        let sentence = chosen(sentence, choice);
-        match (sentence.of_day_ns, sentence.position, sentence.velocity_mps) {
-            (Some(at_ns), Some(position), _)
-                if points.last().is_none_or(|(last_ns, _)| *last_ns != at_ns) =>
-            {
-                points.push((at_ns, position.value));
-            }
-            (None, _, Some(velocity)) => velocities.push((points.len(), velocity.value)),
-            _ => {}
-        }
-    }
-    let moved = |point: usize| {
-        let ((from_ns, from), (to_ns, to)) =
-            (points.get(point.checked_sub(1)?)?, points.get(point + 1)?);
-        let elapsed_s = (to_ns - from_ns) as f64 / SECOND_NS as f64;
-        let earth = Ellipsoid::at(from[0], 0.0);
-        let across_m = earth.transverse_radius_m * earth.cos_latitude;
-        let north_mps = (to[0] - from[0]) * earth.meridian_radius_m / elapsed_s;
-        let east_mps = (to[1] - from[1]) * across_m / elapsed_s;
-        (elapsed_s > 0.0).then_some([north_mps, east_mps])
-    };
-    let (mut before, mut after) = (Spread::default(), Spread::default());
-    for (points_before, velocity) in &velocities {
-        let Some(last) = points_before.checked_sub(1) else { continue };
-        let (Some(of_last), Some(of_next)) = (moved(last), moved(last + 1)) else { continue };
-        let off = |moved: [f64; 2]| [0, 1].map(|axis| velocity[axis] - moved[axis]);
-        before.add(off(of_last));
-        after.add(off(of_next));
-    }
-    // Without a change of velocity the two say the same.
-    Ok(before.count >= VELOCITIES_LEAST && after.square() < 0.5 * before.square())
-}
-
-/// Squares of differences about their mean: a constant error of the velocities says nothing of their time.
-#[derive(Clone, Copy, Debug, Default)]
-struct Spread {
-    count: u32,
-    sum: [f64; 2],
-    squares: f64,
-}
-
-impl Spread {
-    fn add(&mut self, off: [f64; 2]) {
-        self.count += 1;
-        for (sum, off) in self.sum.iter_mut().zip(off) {
-            *sum += off;
-            self.squares += off * off;
-        }
-    }
-
-    fn square(&self) -> f64 {
-        let [north, east] = self.sum;
-        self.squares - (north * north + east * east) / f64::from(self.count.max(1))
-    }
-}
-
-struct NmeaLines {
-    file: BufReader<File>,
-    text: String,
-    line: u64,
-    bytes: Vec<u8>,
-}
-
-impl NmeaLines {
-    fn new(file: File) -> Self {
-        let file = BufReader::with_capacity(1 << 16, file);
-        Self { file, text: String::new(), line: 0, bytes: Vec::new() }
-    }
-
-    /// Reads the next line; `false` at the end. Loggers mix in bytes that aren't text.
-    fn advance(&mut self) -> Result<bool, String> {
-        self.bytes.clear();
-        self.line += 1;
-        let read = (&mut self.file).take(LINE_BYTES_MAX).read_until(b'\n', &mut self.bytes);
-        let read = read.map_err(|error| format!("line {}: {error}", self.line))?;
-        self.text.clear();
-        self.text.push_str(&String::from_utf8_lossy(&self.bytes));
-        Ok(read > 0)
-    }
 }

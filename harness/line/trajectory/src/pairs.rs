@@ -5,15 +5,15 @@
 
 use super::comparison::{Comparison, Quantity};
 use super::gaps::GapList;
-use super::point::{TimeScale, TrajectoryPoint};
+use super::point::{GeodeticPosition, TimeScale, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
 use super::survey::TrajectorySurvey;
 use super::tally::Tally;
-use super::track::{ReferencePoint, ReferenceTrack, q_nc};
+use super::track::{Reference, ReferencePoint, ReferenceTrack, q_nc};
 use octant_account::{Account, AccountEntry};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::FileNameError;
-use octant_scenario::trajectory::{SolutionSpec, TrajectorySpec};
+use octant_scenario::trajectory::{ReferenceSpec, SolutionSpec, TrajectorySpec};
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
@@ -92,7 +92,7 @@ pub struct SolutionPair {
 #[derive(Debug)]
 pub struct SolutionPairs {
     solution: TrajectoryReader,
-    reference: ReferenceTrack,
+    reference: Reference,
     survey: TrajectorySurvey,
     /// Time of the first point that is scored.
     from_ns: i64,
@@ -112,12 +112,11 @@ pub struct SolutionPairs {
     of_file: (u64, Vec<(&'static str, u64)>),
     gaps: GapList,
     scored: Option<Scored>,
-    of_reference: TrajectorySurvey,
     apart: Apart,
 }
 
 const SKIPPED: &str = "points before the time that is scored";
-const INCOMPLETE: &str = "points without the velocity or attitude that the others have";
+const INCOMPLETE: &str = "points without the position, velocity or attitude that the others have";
 const UNREFERRED: &str = "points without a reference at their time";
 
 /// The last point that was scored.
@@ -130,7 +129,7 @@ struct Scored {
 }
 
 /// Words for files of different times.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Apart {
     solution: String,
     reference: String,
@@ -147,8 +146,8 @@ fn near(
     reference: &TrajectorySurvey,
     [latitude_rad, longitude_rad]: [f64; 2],
 ) -> Result<(), PairsError> {
-    let TrajectoryPoint { latitude_rad: first_rad, longitude_rad: first_east_rad, .. } =
-        reference.first;
+    let Some(first) = reference.first.position else { return Ok(()) };
+    let GeodeticPosition { latitude_rad: first_rad, longitude_rad: first_east_rad, .. } = first;
     let earth = Ellipsoid::at(latitude_rad, 0.0);
     let east_rad = (first_east_rad - longitude_rad + PI).rem_euclid(TAU) - PI;
     let off_m = libm::hypot(
@@ -176,13 +175,48 @@ impl SolutionPairs {
         let path = |trajectory: &TrajectorySpec| -> Result<PathBuf, FileNameError> {
             trajectory.file.path(folder)
         };
-        let (of_solution, of_reference) = (path(&spec.solution)?, path(&spec.reference)?);
+        let of_solution = path(&spec.solution)?;
         let survey = TrajectorySurvey::of(&of_solution, &spec.solution.format)?;
-        let reference =
-            TrajectorySurvey::of_role(&of_reference, &spec.reference.format, "reference")?;
-        let name = |path: &Path| path.display().to_string();
-        near(&of_reference, &reference, site_rad)?;
-        let (solution_name, reference_name) = (name(&of_solution), name(&of_reference));
+        let (reference, offset_ns, apart) = match &spec.reference {
+            ReferenceSpec::Heading { heading_rad, uncertainty_rad } => {
+                (Reference::heading(*heading_rad, *uncertainty_rad), 0, Apart::default())
+            }
+            ReferenceSpec::File(file) => {
+                let named = (of_solution.display().to_string(), &survey);
+                Self::open_reference(named, spec, (&path(file)?, file), site_rad)?
+            }
+        };
+        Ok(Self {
+            solution: TrajectoryReader::open(&of_solution, &spec.solution.format)?,
+            reference,
+            from_ns: survey.span_ns.0.saturating_add(spec.skip_ns),
+            gaps: GapList::new(survey.period_ns),
+            comparison: Comparison::of_points(survey.points),
+            survey,
+            offset_ns,
+            period_ns,
+            until_ns: duration_s.map_or(u64::MAX, |s| (s * 1e9).round() as u64),
+            first_ns: None,
+            last_ns: 0,
+            pairs: 0,
+            identical: [true; 3],
+            points: Tally::default(),
+            of_file: (0, Vec::new()),
+            scored: None,
+            apart,
+        })
+    }
+
+    /// Opens the file of the reference; returns it with what is added to the solution's times.
+    fn open_reference(
+        (solution_name, survey): (String, &TrajectorySurvey),
+        spec: &SolutionSpec,
+        (of_reference, file): (&Path, &TrajectorySpec),
+        site_rad: [f64; 2],
+    ) -> Result<(Reference, i64, Apart), PairsError> {
+        let reference = TrajectorySurvey::of_role(of_reference, &file.format, "reference")?;
+        near(of_reference, &reference, site_rad)?;
+        let reference_name = of_reference.display().to_string();
         let scales = (survey.scale, reference.scale);
         let known_ns = scales.0.offset_to(scales.1, survey.span_ns.0, reference.span_ns.0);
         let offset_ns = match (known_ns, spec.offset_ns) {
@@ -207,33 +241,22 @@ impl SolutionPairs {
             return Err(PairsError::Apart { solution, reference, spans_s });
         }
         let apart = Apart { solution: solution_name, reference: reference_name, spans_s };
-        let reader = TrajectoryReader::open(&of_reference, &spec.reference.format)?;
-        Ok(Self {
-            solution: TrajectoryReader::open(&of_solution, &spec.solution.format)?,
-            reference: ReferenceTrack::new(reader, spec.gap_ns, reference.period_ns)?,
-            from_ns: survey.span_ns.0.saturating_add(spec.skip_ns),
-            gaps: GapList::new(survey.period_ns),
-            survey,
-            offset_ns,
-            period_ns,
-            until_ns: duration_s.map_or(u64::MAX, |s| (s * 1e9).round() as u64),
-            first_ns: None,
-            last_ns: 0,
-            pairs: 0,
-            identical: [true; 3],
-            comparison: Comparison::default(),
-            points: Tally::default(),
-            of_file: (0, Vec::new()),
-            scored: None,
-            of_reference: reference,
-            apart,
-        })
+        let reader = TrajectoryReader::open(of_reference, &file.format)?;
+        let track = ReferenceTrack::new(reader, spec.gap_ns, reference.period_ns)?;
+        Ok((Reference::File(Box::new(track), Box::new(reference)), offset_ns, apart))
     }
 
     /// What the file of the solution holds.
     #[must_use]
     pub fn survey(&self) -> &TrajectorySurvey {
         &self.survey
+    }
+
+    /// Returns whether both have positions, and both roll and pitch.
+    #[must_use]
+    pub fn compares(&self) -> [bool; 2] {
+        let [position, tilt] = self.reference.has();
+        [position && self.survey.position, tilt && self.survey.tilt]
     }
 
     /// Number of points that a solution without gaps has in the time from its first to its last point, or
@@ -251,8 +274,10 @@ impl SolutionPairs {
     /// If a file is damaged, or no point has a reference.
     pub fn next_pair(&mut self) -> Result<Option<SolutionPair>, PairsError> {
         while let Some(point) = self.next_point()? {
-            let lacks = (self.survey.velocity && point.velocity_mps.is_none())
-                || (self.survey.attitude && point.attitude_rad.is_none());
+            let lacks = (self.survey.position && point.position.is_none())
+                || (self.survey.velocity && point.velocity_mps.is_none())
+                || (self.survey.attitude && point.attitude.is_none())
+                || (self.survey.tilt && point.attitude_rad().is_none());
             let reason = if point.time_ns < self.from_ns {
                 Some(SKIPPED)
             } else if lacks {
@@ -273,10 +298,12 @@ impl SolutionPairs {
                     continue;
                 }
             };
-            // Longitudes may count from 0 to 360° in one file and from -180° in the other.
-            let turns = ((point.longitude_rad - reference.longitude_rad) / TAU).round();
-            let longitude_rad = point.longitude_rad - turns * TAU;
-            let point = TrajectoryPoint { longitude_rad, ..point };
+            let mut point = point;
+            if let (Some(here), Some(there)) = (&mut point.position, &reference.position) {
+                // Longitudes may count from 0 to 360° in one file and from -180° in the other.
+                let turns = ((here.longitude_rad - there.longitude_rad) / TAU).round();
+                here.longitude_rad -= turns * TAU;
+            }
             let first_ns = *self.first_ns.get_or_insert(point.time_ns);
             let since_ns = u64::try_from(point.time_ns - first_ns).unwrap_or(0);
             let time_ns = since_ns.saturating_add(self.period_ns);
@@ -289,10 +316,14 @@ impl SolutionPairs {
             self.step(point.time_ns);
             self.comparison.push(time_ns, &point, &reference);
             let same = [
-                point.latitude_rad == reference.latitude_rad
-                    && point.longitude_rad == reference.longitude_rad,
+                point.position.zip(reference.position).is_some_and(|(here, there)| {
+                    here.latitude_rad == there.latitude_rad
+                        && here.longitude_rad == there.longitude_rad
+                }),
                 point.velocity_mps.is_some() && point.velocity_mps == reference.velocity_mps,
-                point.attitude_rad.is_some_and(|attitude| Some(q_nc(attitude)) == reference.q_nc),
+                point
+                    .attitude
+                    .is_some_and(|attitude| Some(q_nc(attitude.or_level_rad())) == reference.q_nc),
             ];
             for (identical, same) in self.identical.iter_mut().zip(same) {
                 *identical &= same;
@@ -377,12 +408,15 @@ impl SolutionPairs {
         let points =
             points.left_out(AccountEntry::new(rest, "points after the time that is scored"));
         let zero_ns = self.first_ns.unwrap_or(self.from_ns);
-        let reference = self.of_reference.account.clone();
-        vec![
-            self.survey.account.clone(),
-            self.reference.gaps().tell(reference, POINT, zero_ns.saturating_add(self.offset_ns)),
-            self.gaps.tell(points, POINT, zero_ns),
-        ]
+        let reference = match &self.reference {
+            Reference::File(track, survey) => {
+                let zero_ns = zero_ns.saturating_add(self.offset_ns);
+                Some(track.gaps().tell(survey.account.clone(), POINT, zero_ns))
+            }
+            Reference::Constant(_) => None,
+        };
+        let points = self.gaps.tell(points, POINT, zero_ns);
+        std::iter::once(self.survey.account.clone()).chain(reference).chain([points]).collect()
     }
 
     /// Describes what makes the comparison so far no evidence; `None`: nothing does.

@@ -112,23 +112,68 @@ impl PointSigma {
     }
 }
 
-/// A point of a trajectory.
+/// A position on the ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrajectoryPoint {
-    /// Time on the scale of the file, ns.
-    pub time_ns: i64,
+pub struct GeodeticPosition {
     /// Geodetic latitude, rad.
     pub latitude_rad: f64,
     /// Longitude, rad.
     pub longitude_rad: f64,
     /// Height above the ellipsoid, m; 0 where the file has none.
     pub height_m: f64,
+}
+
+/// Attitude of the case, or its heading alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointAttitude {
+    /// Heading from north by east, rad.
+    pub heading_rad: f64,
+    /// Roll and pitch, rad; `None`: the file has the heading alone.
+    pub tilt_rad: Option<[f64; 2]>,
+}
+
+impl PointAttitude {
+    /// The attitude of roll, pitch and heading, rad.
+    #[must_use]
+    pub const fn of([roll, pitch, heading]: [f64; 3]) -> Self {
+        Self { heading_rad: heading, tilt_rad: Some([roll, pitch]) }
+    }
+
+    /// Roll, pitch and heading, rad: those of a level case, where the heading alone is known.
+    #[must_use]
+    pub fn or_level_rad(self) -> [f64; 3] {
+        let [roll, pitch] = self.tilt_rad.unwrap_or_default();
+        [roll, pitch, self.heading_rad]
+    }
+}
+
+/// A point of a trajectory: at least one of position and attitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrajectoryPoint {
+    /// Time on the scale of the file, ns.
+    pub time_ns: i64,
+    /// Position; `None`: the file has headings alone.
+    pub position: Option<GeodeticPosition>,
     /// Velocity over ground, north and east, m/s.
     pub velocity_mps: Option<[f64; 2]>,
-    /// Roll, pitch and heading of the case, rad.
-    pub attitude_rad: Option<[f64; 3]>,
+    /// Attitude of the case.
+    pub attitude: Option<PointAttitude>,
     /// Standard deviations that the file states.
     pub sigma: PointSigma,
+    /// Change of roll, pitch and heading by one in their last digits, rad; 0 where the file has all digits.
+    pub digit_rad: [f64; 3],
+    /// How far the time of the attitude may be off, s: that of a sentence without one.
+    pub attitude_doubt_s: f64,
+}
+
+impl TrajectoryPoint {
+    /// Roll, pitch and heading, rad, where all three are known.
+    #[must_use]
+    pub fn attitude_rad(&self) -> Option<[f64; 3]> {
+        self.attitude
+            .filter(|attitude| attitude.tilt_rad.is_some())
+            .map(PointAttitude::or_level_rad)
+    }
 }
 
 /// Longest line of text, bytes: a file of another kind may have no line ends and must not fill the memory.

@@ -2,8 +2,8 @@
 
 use super::columns::ColumnsReader;
 use super::messages::MessageReader;
-use super::nmea::NmeaReader;
-use super::point::{Points, TimeScale, TrajectoryPoint};
+use super::nmea;
+use super::point::{PointAttitude, Points, TimeScale, TrajectoryPoint};
 use super::rtklib::RtklibReader;
 use super::sbet::SbetReader;
 use super::tally::{OUT_OF_ORDER, Tally};
@@ -53,9 +53,7 @@ impl TrajectoryReader {
             TrajectoryFormat::Csv(columns) => {
                 Box::new(ColumnsReader::new(file, columns).map_err(fail)?)
             }
-            TrajectoryFormat::Nmea(choice) => {
-                Box::new(NmeaReader::new(file, choice).map_err(fail)?)
-            }
+            TrajectoryFormat::Nmea(choice) => nmea::open(file, choice).map_err(fail)?,
             TrajectoryFormat::Rtklib => Box::new(RtklibReader::new(file).map_err(fail)?),
             TrajectoryFormat::Sbet => Box::new(SbetReader::new(file).map_err(fail)?),
             TrajectoryFormat::Messages(protocol) => {
@@ -140,11 +138,15 @@ impl TrajectoryReader {
 /// Reason why a point can't be one.
 fn impossible(point: &TrajectoryPoint) -> Option<String> {
     let [north, east] = point.velocity_mps.unwrap_or_default();
-    let [roll, pitch, heading] = point.attitude_rad.unwrap_or_default();
+    let [roll, pitch, heading] =
+        point.attitude.map(PointAttitude::or_level_rad).unwrap_or_default();
+    let [latitude, longitude, height_m] = point.position.map_or([0.0; 3], |position| {
+        [position.latitude_rad, position.longitude_rad, position.height_m]
+    });
     let numbers = [
-        ("latitude", point.latitude_rad.to_degrees(), FRAC_PI_2.to_degrees(), "deg"),
-        ("longitude", point.longitude_rad.to_degrees(), TAU.to_degrees(), "deg"),
-        ("height", point.height_m, 1e7, "m"),
+        ("latitude", latitude.to_degrees(), FRAC_PI_2.to_degrees(), "deg"),
+        ("longitude", longitude.to_degrees(), TAU.to_degrees(), "deg"),
+        ("height", height_m, 1e7, "m"),
         ("velocity north", north, 2e4, "m/s"),
         ("velocity east", east, 2e4, "m/s"),
         // Angles may run on over a whole turn.

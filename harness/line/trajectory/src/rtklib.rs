@@ -3,8 +3,8 @@
 //! Format: RTKLIB 2.4.2 manual, appendix B.1.
 
 use super::point::{
-    LINE_BYTES_MAX, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS,
-    gps_to_utc_ns,
+    GeodeticPosition, LINE_BYTES_MAX, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint,
+    WEEK_NS, gps_to_utc_ns,
 };
 use super::tally::Tally;
 use octant_base::decimal::decimal_ns;
@@ -90,12 +90,16 @@ impl RtklibReader {
         };
         let point = TrajectoryPoint {
             time_ns,
-            latitude_rad: number(0)?.to_radians(),
-            longitude_rad: number(1)?.to_radians(),
-            height_m: number(2)?,
+            position: Some(GeodeticPosition {
+                latitude_rad: number(0)?.to_radians(),
+                longitude_rad: number(1)?.to_radians(),
+                height_m: number(2)?,
+            }),
             velocity_mps: two(columns.velocity)?,
-            attitude_rad: None,
+            attitude: None,
             sigma,
+            digit_rad: [0.0; 3],
+            attitude_doubt_s: 0.0,
         };
         Ok((point, quality))
     }

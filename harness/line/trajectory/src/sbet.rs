@@ -4,7 +4,9 @@
 //! don't agree about their axes. Heading counts from the platform's x axis, which the wander angle turns away from
 //! north; they don't agree about its sign either, so an attitude is taken where it is zero.
 
-use super::point::{PointSigma, Points, TimeScale, TrajectoryPoint};
+use super::point::{
+    GeodeticPosition, PointAttitude, PointSigma, Points, TimeScale, TrajectoryPoint,
+};
 use super::tally::Tally;
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -80,12 +82,12 @@ impl Points for SbetReader {
         self.tally.point(1);
         Ok(Some(TrajectoryPoint {
             time_ns: ((self.weeks_s + time_s) * 1e9).round() as i64,
-            latitude_rad,
-            longitude_rad,
-            height_m,
+            position: Some(GeodeticPosition { latitude_rad, longitude_rad, height_m }),
             velocity_mps: None,
-            attitude_rad: (wander == 0.0).then_some([roll, pitch, heading]),
+            attitude: (wander == 0.0).then_some(PointAttitude::of([roll, pitch, heading])),
             sigma: PointSigma::default(),
+            digit_rad: [0.0; 3],
+            attitude_doubt_s: 0.0,
         }))
     }
 

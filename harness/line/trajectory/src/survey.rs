@@ -27,10 +27,14 @@ pub struct TrajectorySurvey {
     pub points: u64,
     /// The most common time between two points, ns.
     pub period_ns: i64,
+    /// True if points have a position.
+    pub position: bool,
     /// True if points have a velocity.
     pub velocity: bool,
-    /// True if points have an attitude.
+    /// True if points have a heading.
     pub attitude: bool,
+    /// True if points have roll and pitch, too.
+    pub tilt: bool,
     /// What became of each unit of the file.
     pub account: Account,
 }
@@ -56,7 +60,9 @@ impl TrajectorySurvey {
         let mut reader = TrajectoryReader::open(path, format)?;
         let mut span_ns: Option<(i64, i64)> = None;
         let mut first = None;
-        let (mut points, mut velocities, mut attitudes) = (0_u64, 0_u64, 0_u64);
+        let mut points = 0_u64;
+        // Positions, velocities, headings, tilts.
+        let mut counts = [0_u64; 4];
         // By the majority vote of Boyer and Moore, which needs no memory: a time between two points that more
         // than half of them have is found.
         let (mut period_ns, mut votes) = (0, 0_u64);
@@ -65,8 +71,15 @@ impl TrajectorySurvey {
         while let Some(point) = reader.next()? {
             points += 1;
             first.get_or_insert(point);
-            velocities += u64::from(point.velocity_mps.is_some());
-            attitudes += u64::from(point.attitude_rad.is_some());
+            let has = [
+                point.position.is_some(),
+                point.velocity_mps.is_some(),
+                point.attitude.is_some(),
+                point.attitude_rad().is_some(),
+            ];
+            for (count, has) in counts.iter_mut().zip(has) {
+                *count += u64::from(has);
+            }
             if let Some((_, last_ns)) = span_ns {
                 let exactly_ns = point.time_ns - last_ns;
                 let apart_ns = rounded(exactly_ns);
@@ -95,7 +108,8 @@ impl TrajectorySurvey {
             ));
         }
         let (Some(span_ns), Some(first), true) = (span_ns, first, points > 1) else {
-            let reason = format!("found {points} points with a position, expected two or more");
+            let reason =
+                format!("found {points} points with a position or a heading, expected two or more");
             return Err(TrajectoryError::new(path, reason));
         };
         // A unit that sends on without a solution hasn't ended where its last point is.
@@ -104,7 +118,11 @@ impl TrajectorySurvey {
         let period_ns = whole_rate(period_ns, alike_ns as f64 / alike.max(1) as f64);
         let most = |count: u64| count as f64 >= SHARE * points as f64;
         let mut account = reader.account(role);
-        for (count, name) in [(velocities, "velocity"), (attitudes, "attitude")] {
+        let [position, velocity, attitude, tilt] = counts.map(most);
+        // An attitude lacks nothing that was counted already.
+        let named = if tilt || counts[3] > 0 { "attitude" } else { "heading" };
+        for (count, name) in [(counts[0], "position"), (counts[1], "velocity"), (counts[2], named)]
+        {
             if !most(count) {
                 let kind = format!("points with a {name}, too few for it to count");
                 account = account.note(AccountEntry::new(count, kind));
@@ -116,8 +134,10 @@ impl TrajectorySurvey {
             span_ns,
             points,
             period_ns: period_ns.max(1),
-            velocity: most(velocities),
-            attitude: most(attitudes),
+            position,
+            velocity,
+            attitude,
+            tilt,
             account,
         })
     }

@@ -25,8 +25,12 @@ fn all(path: &Path, format: &TrajectoryFormat) -> Result<Vec<TrajectoryPoint>, S
     Ok(points)
 }
 
-const NMEA: TrajectoryFormat =
-    TrajectoryFormat::Nmea(NmeaChoice { talker: None, fixes_alone: false });
+const NMEA: TrajectoryFormat = TrajectoryFormat::Nmea(NmeaChoice {
+    talker: None,
+    fixes_alone: false,
+    points: None,
+    heading_time: None,
+});
 
 /// Reason why a file is refused once it was read to its end.
 fn refused(path: &Path, format: &TrajectoryFormat) -> String {
@@ -46,24 +50,24 @@ fn columns_are_found_by_the_names_of_exports() {
     assert_eq!(points.len(), 2);
     let first = points[0];
     assert_eq!(first.time_ns, 1_767_225_600_123_456_789);
-    assert_eq!(first.latitude_rad, 60.0_f64.to_radians());
-    assert_eq!((first.height_m, first.velocity_mps), (0.0, None));
-    assert_eq!(first.attitude_rad, Some([-2.0, 1.0, 90.0].map(f64::to_radians)));
+    assert_eq!(first.position.unwrap().latitude_rad, 60.0_f64.to_radians());
+    assert_eq!((first.position.unwrap().height_m, first.velocity_mps), (0.0, None));
+    assert_eq!(first.attitude_rad(), Some([-2.0, 1.0, 90.0].map(f64::to_radians)));
     // Octant's own truth.
     let text = "time_s,latitude_deg,true_longitude_deg,true_latitude_deg\n1,9,2,3\n2,9,2,3\n";
     let points = all(&file(folder.path(), "truth.csv", text), &csv()).unwrap();
-    assert_eq!(points[0].longitude_rad, 2.0_f64.to_radians());
-    assert_eq!(points[0].latitude_rad, 9.0_f64.to_radians());
+    assert_eq!(points[0].position.unwrap().longitude_rad, 2.0_f64.to_radians());
+    assert_eq!(points[0].position.unwrap().latitude_rad, 9.0_f64.to_radians());
     let of_reference = TrajectoryColumns { truth_first: true, ..TrajectoryColumns::default() };
     let format = TrajectoryFormat::Csv(Box::new(of_reference));
     let points = all(&folder.path().join("truth.csv"), &format).unwrap();
-    assert_eq!(points[0].latitude_rad, 3.0_f64.to_radians());
+    assert_eq!(points[0].position.unwrap().latitude_rad, 3.0_f64.to_radians());
     // A solution's heading isn't the truth because the truth has none.
     let text = "time_s,latitude_deg,true_longitude_deg,true_latitude_deg,longitude_deg,roll_deg,pitch_deg,heading_deg\n\
         1,9,2,3,4,5,6,7\n";
     let side_by_side = file(folder.path(), "both.csv", text);
-    assert_eq!(all(&side_by_side, &format).unwrap()[0].attitude_rad, None);
-    assert!(all(&side_by_side, &csv()).unwrap()[0].attitude_rad.is_some());
+    assert_eq!(all(&side_by_side, &format).unwrap()[0].attitude_rad(), None);
+    assert!(all(&side_by_side, &csv()).unwrap()[0].attitude_rad().is_some());
 }
 
 #[test]
@@ -84,7 +88,10 @@ fn columns_are_found_as_the_scenario_says() {
     let path = file(folder.path(), "a.txt", "made by X\n  10.5  1.0 -3  2 4\n 20 1.1 -3 2 4\n");
     let points = all(&path, &format).unwrap();
     assert_eq!(points[0].time_ns, 10_500_000);
-    assert_eq!((points[0].latitude_rad, points[0].longitude_rad), (1.0, -3.0));
+    assert_eq!(
+        (points[0].position.unwrap().latitude_rad, points[0].position.unwrap().longitude_rad),
+        (1.0, -3.0)
+    );
     assert_eq!(points[0].velocity_mps, Some([1.0, 2.0]));
 }
 
@@ -143,12 +150,12 @@ fn sentences_of_one_time_are_one_point_and_a_night_has_a_midnight() {
     // 2026-12-31T23:59:59.5 UTC.
     assert_eq!(points[0].time_ns, 1_798_761_599 * SECOND_NS + SECOND_NS / 2);
     assert_eq!(points[1].time_ns - points[0].time_ns, SECOND_NS);
-    assert!((points[0].longitude_rad + 10.5_f64.to_radians()).abs() < 1e-15);
-    assert!((points[1].latitude_rad - 60.01_f64.to_radians()).abs() < 1e-15);
-    assert_eq!(points[0].height_m, 50.0);
+    assert!((points[0].position.unwrap().longitude_rad + 10.5_f64.to_radians()).abs() < 1e-15);
+    assert!((points[1].position.unwrap().latitude_rad - 60.01_f64.to_radians()).abs() < 1e-15);
+    assert_eq!(points[0].position.unwrap().height_m, 50.0);
     let [north, east] = points[0].velocity_mps.unwrap();
     assert!(north.abs() < 1e-12 && (east - 7.2 * 1852.0 / 3600.0).abs() < 1e-12);
-    assert_eq!(points[0].attitude_rad, Some([-1.0, 0.5, 91.5].map(f64::to_radians)));
+    assert_eq!(points[0].attitude_rad(), Some([-1.0, 0.5, 91.5].map(f64::to_radians)));
 }
 
 #[test]
@@ -217,7 +224,7 @@ fn solutions_of_rtklib_are_read() {
     assert_eq!(points[0].time_ns, 1_795_694_400 * SECOND_NS, "UTC, 18 leap seconds behind");
     assert_eq!(points[1].time_ns - points[0].time_ns, SECOND_NS / 5);
     assert_eq!(points[0].velocity_mps, Some([1.0, -2.0]));
-    assert_eq!(points[0].height_m, 50.0);
+    assert_eq!(points[0].position.unwrap().height_m, 50.0);
     let headless = text.lines().skip(2).collect::<Vec<_>>().join("\n");
     let found =
         all(&file(folder.path(), "b.pos", headless), &TrajectoryFormat::Rtklib).unwrap_err();
@@ -237,12 +244,15 @@ fn records_of_an_sbet_are_read() {
     let path = file(folder.path(), "a.sbet", &bytes);
     let points = all(&path, &TrajectoryFormat::Sbet).unwrap();
     assert_eq!(points[0].time_ns, 388_818 * SECOND_NS);
-    assert_eq!((points[0].latitude_rad, points[0].longitude_rad), (1.0, -0.2));
-    assert_eq!((points[0].velocity_mps, points[0].attitude_rad), (None, Some([0.01, 0.02, 0.5])));
+    assert_eq!(
+        (points[0].position.unwrap().latitude_rad, points[0].position.unwrap().longitude_rad),
+        (1.0, -0.2)
+    );
+    assert_eq!((points[0].velocity_mps, points[0].attitude_rad()), (None, Some([0.01, 0.02, 0.5])));
     let survey = TrajectorySurvey::of(&path, &TrajectoryFormat::Sbet).unwrap();
     assert_eq!((survey.points, survey.period_ns, survey.scale), (2, 5_000_000, TimeScale::GpsWeek));
     let turned = file(folder.path(), "b.sbet", record(1.0, 0.1));
-    assert_eq!(all(&turned, &TrajectoryFormat::Sbet).unwrap()[0].attitude_rad, None);
+    assert_eq!(all(&turned, &TrajectoryFormat::Sbet).unwrap()[0].attitude_rad(), None);
     let torn = file(folder.path(), "c.sbet", &bytes[..200]);
     let found = all(&torn, &TrajectoryFormat::Sbet).unwrap_err();
     assert!(found.contains("found 200 bytes, expected records of 136 bytes"), "{found}");
@@ -280,7 +290,8 @@ fn a_reference_with_velocities_is_exact_for_a_constant_acceleration() {
     for tenth in 0..=390 {
         let t = f64::from(tenth) / 10.0;
         let found = track.at(tenth as i64 * SECOND_NS / 10).unwrap().unwrap();
-        let off_rad = (found.longitude_rad - longitude(t).to_radians() + std::f64::consts::PI)
+        let off_rad = (found.position.unwrap().longitude_rad - longitude(t).to_radians()
+            + std::f64::consts::PI)
             .rem_euclid(std::f64::consts::TAU)
             - std::f64::consts::PI;
         // Numbers of the file have 15 digits after the point.
@@ -418,7 +429,10 @@ fn velocities_go_to_their_own_positions_in_any_order_of_the_cycle() {
             }
             // To seven digits of a minute, whatever else gave the position.
             let north_rad = (30.0 + (10.0 + Circle::latitude_min(second)) / 60.0).to_radians();
-            assert!((point.latitude_rad - north_rad).abs() < 2e-11, "{name} {second}");
+            assert!(
+                (point.position.unwrap().latitude_rad - north_rad).abs() < 2e-11,
+                "{name} {second}"
+            );
             assert_eq!(point.time_ns % (60 * SECOND_NS), i64::from(second % 60) * SECOND_NS);
         }
     }

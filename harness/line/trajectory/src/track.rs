@@ -4,9 +4,11 @@
 //! has none: with an acceleration a, a line over the time T is wrong by a T²/8 at most. Velocity goes along a line,
 //! attitude along the shortest turn.
 
+use super::bands::EXPANDED;
 use super::gaps::GapList;
-use super::point::{PointSigma, TrajectoryPoint};
+use super::point::{GeodeticPosition, PointAttitude, PointSigma, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
+use super::survey::TrajectorySurvey;
 use octant_earth::UnitQuaternion;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::{c_nc, quaternion_from_matrix};
@@ -15,18 +17,18 @@ use std::f64::consts::{PI, TAU};
 /// What a reference says at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferencePoint {
-    /// Geodetic latitude, rad.
-    pub latitude_rad: f64,
-    /// Longitude, rad.
-    pub longitude_rad: f64,
-    /// Height above the ellipsoid, m.
-    pub height_m: f64,
+    /// Position; `None`: the file has headings alone.
+    pub position: Option<GeodeticPosition>,
     /// Velocity over ground, north and east, m/s.
     pub velocity_mps: Option<[f64; 2]>,
-    /// Attitude `q_nc` of the case.
+    /// Attitude `q_nc` of the case: that of a level one, where the heading alone is known.
     pub q_nc: Option<UnitQuaternion<f64>>,
+    /// True if roll and pitch are known.
+    pub tilt: bool,
     /// Standard deviations that the file states: the larger of those of the points around it.
     pub sigma: PointSigma,
+    /// Changes of roll, pitch and heading by one in their last digits, rad: the larger ones of the points around it.
+    pub digit_rad: [f64; 3],
 }
 
 impl ReferencePoint {
@@ -48,6 +50,52 @@ impl ReferencePoint {
 #[must_use]
 pub fn q_nc([roll, pitch, heading]: [f64; 3]) -> UnitQuaternion<f64> {
     quaternion_from_matrix(&c_nc(heading, pitch, roll))
+}
+
+/// What a solution is scored against.
+#[derive(Debug)]
+pub(crate) enum Reference {
+    /// A file, with what it holds.
+    File(Box<ReferenceTrack>, Box<TrajectorySurvey>),
+    /// The same at all times.
+    Constant(ReferencePoint),
+}
+
+impl Reference {
+    /// A heading that was surveyed, rad, with its expanded uncertainty (95 %).
+    pub(crate) fn heading(heading_rad: f64, uncertainty_rad: Option<f64>) -> Self {
+        let sigma_rad = uncertainty_rad.map(|uncertainty_rad| uncertainty_rad / EXPANDED);
+        Self::Constant(ReferencePoint {
+            position: None,
+            velocity_mps: None,
+            q_nc: Some(q_nc([0.0, 0.0, heading_rad])),
+            tilt: false,
+            sigma: PointSigma {
+                attitude_rad: sigma_rad.map(|sigma_rad| [sigma_rad; 3]),
+                ..PointSigma::default()
+            },
+            digit_rad: [0.0; 3],
+        })
+    }
+
+    /// Returns the reference at a time of its file, ns.
+    ///
+    /// # Errors
+    /// If the file is damaged.
+    pub(crate) fn at(&mut self, time_ns: i64) -> Result<Option<ReferencePoint>, TrajectoryError> {
+        match self {
+            Self::File(track, _) => track.at(time_ns),
+            Self::Constant(point) => Ok(Some(*point)),
+        }
+    }
+
+    /// Returns whether it has positions, and roll and pitch.
+    pub(crate) fn has(&self) -> [bool; 2] {
+        match self {
+            Self::File(_, survey) => [survey.position, survey.tilt],
+            Self::Constant(point) => [point.position.is_some(), point.tilt],
+        }
+    }
 }
 
 /// Reads a reference forward, for times that run forward.
@@ -113,14 +161,40 @@ fn between(a: &TrajectoryPoint, b: &TrajectoryPoint, time_ns: i64) -> ReferenceP
     let length_s = (b.time_ns - a.time_ns) as f64 * 1e-9;
     let share = if length_s > 0.0 { (time_ns - a.time_ns) as f64 * 1e-9 / length_s } else { 0.0 };
     let line = |a: f64, b: f64| a + (b - a) * share;
-    let height_m = line(a.height_m, b.height_m);
+    let velocities = a.velocity_mps.zip(b.velocity_mps);
+    let turns = a.attitude.zip(b.attitude);
+    let quaternion = |attitude: PointAttitude| q_nc(attitude.or_level_rad());
+    ReferencePoint {
+        position: a
+            .position
+            .zip(b.position)
+            .map(|(from, to)| moved(&from, &to, velocities, share, length_s)),
+        velocity_mps: velocities.map(|(a, b)| [line(a[0], b[0]), line(a[1], b[1])]),
+        // Two attitudes on opposite sides have no shortest turn; the first is as good as any.
+        q_nc: turns.map(|(a, b)| {
+            let (a, b) = (quaternion(a), quaternion(b));
+            a.try_slerp(&b, share, 1e-12).unwrap_or(a)
+        }),
+        tilt: turns.is_some_and(|(a, b)| a.tilt_rad.is_some() && b.tilt_rad.is_some()),
+        sigma: a.sigma.larger(b.sigma),
+        digit_rad: std::array::from_fn(|axis| a.digit_rad[axis].max(b.digit_rad[axis])),
+    }
+}
+
+/// Position between two others that are a time apart, s, at a share of it.
+fn moved(
+    a: &GeodeticPosition,
+    b: &GeodeticPosition,
+    velocities: Option<([f64; 2], [f64; 2])>,
+    share: f64,
+    length_s: f64,
+) -> GeodeticPosition {
     let east_rad = (b.longitude_rad - a.longitude_rad + PI).rem_euclid(TAU) - PI;
     let north_rad = b.latitude_rad - a.latitude_rad;
-    let velocities = a.velocity_mps.zip(b.velocity_mps);
     let mut moved = [north_rad * share, east_rad * share];
     if let Some((va, vb)) = velocities {
-        let [ra, rb] = [(a, va), (b, vb)].map(|(point, [north, east])| {
-            let earth = Ellipsoid::at(point.latitude_rad, point.height_m);
+        let [ra, rb] = [(a, va), (b, vb)].map(|(place, [north, east])| {
+            let earth = Ellipsoid::at(place.latitude_rad, place.height_m);
             let across_m = earth.transverse_radius_m * earth.cos_latitude;
             [north / earth.meridian_radius_m, east / across_m].map(|rate| rate * length_s)
         });
@@ -130,14 +204,9 @@ fn between(a: &TrajectoryPoint, b: &TrajectoryPoint, time_ns: i64) -> ReferenceP
                 + s * (1.0 - s) * ((1.0 - s) * ra[axis] - s * rb[axis]);
         }
     }
-    let turns = a.attitude_rad.zip(b.attitude_rad).map(|(a, b)| (q_nc(a), q_nc(b)));
-    ReferencePoint {
+    GeodeticPosition {
         latitude_rad: a.latitude_rad + moved[0],
         longitude_rad: a.longitude_rad + moved[1],
-        height_m,
-        velocity_mps: velocities.map(|(a, b)| [line(a[0], b[0]), line(a[1], b[1])]),
-        // Two attitudes on opposite sides have no shortest turn; the first is as good as any.
-        q_nc: turns.map(|(a, b)| a.try_slerp(&b, share, 1e-12).unwrap_or(a)),
-        sigma: a.sigma.larger(b.sigma),
+        height_m: a.height_m + (b.height_m - a.height_m) * share,
     }
 }

@@ -11,7 +11,7 @@ use octant_verdict::Verdict;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 #[derive(Debug, Args)]
 pub(super) struct CaptureArguments {
@@ -26,6 +26,9 @@ pub(super) struct CaptureArguments {
     /// Ends as an error when nothing comes for so long; 0: never.
     #[arg(long, value_name = "TIME", default_value = "10 s", allow_negative_numbers = true)]
     silence: String,
+    /// Write a TAG block with the time of arrival before each line that begins with $ or !: for sentences without a time.
+    #[arg(long)]
+    stamp: bool,
 }
 
 /// Longest wait in one poll of the port, which bounds the reaction to Ctrl-C.
@@ -36,7 +39,7 @@ const WRITTEN_EVERY: Duration = Duration::from_secs(1);
 const TIME_MAX_S: f64 = 1e8;
 
 pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> {
-    let CaptureArguments { uri, out, duration, silence } = arguments;
+    let CaptureArguments { uri, out, duration, silence, stamp } = arguments;
     let uri: Uri = (uri.parse())
         .map_err(|error| Failure::input(format!("failed to read the port: {error}")))?;
     let time = |name: &str, text: &str| {
@@ -62,6 +65,7 @@ pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> 
         return Err(Failure::input(format!("found {uri}, expected a serial line, UDP or TCP")));
     };
     let mut written = Written::new(out)?;
+    written.stamper = stamp.then(Stamper::default);
     interrupt::watch(|| {})
         .map_err(|error| Failure::bench(format!("failed to wait for Ctrl-C: {error}")))?;
     let does =
@@ -73,6 +77,33 @@ pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> 
     ended
 }
 
+/// Writes a TAG block with the time of arrival before each sentence that begins a line, and everything else as it came.
+#[derive(Clone, Copy, Debug)]
+struct Stamper {
+    begins_line: bool,
+}
+
+impl Default for Stamper {
+    fn default() -> Self {
+        Self { begins_line: true }
+    }
+}
+
+impl Stamper {
+    fn write(&mut self, came: &[u8], at: SystemTime, to: &mut Vec<u8>) {
+        for part in came.split_inclusive(|byte| *byte == b'\n') {
+            if self.begins_line && matches!(part.first(), Some(b'$' | b'!')) {
+                let since = at.duration_since(UNIX_EPOCH).unwrap_or_default();
+                let fields = format!("c:{}", since.as_millis());
+                let sum = fields.bytes().fold(0, |sum, byte| sum ^ byte);
+                to.extend_from_slice(format!("\\{fields}*{sum:02X}\\").as_bytes());
+            }
+            to.extend_from_slice(part);
+            self.begins_line = part.ends_with(b"\n");
+        }
+    }
+}
+
 /// The file, and what came into it.
 struct Written {
     file: File,
@@ -82,6 +113,8 @@ struct Written {
     first: Option<Instant>,
     last: Instant,
     longest_silence: Duration,
+    /// Writes times of arrival, where they are wanted.
+    stamper: Option<Stamper>,
 }
 
 impl Written {
@@ -102,6 +135,7 @@ impl Written {
             first: None,
             last: Instant::now(),
             longest_silence: Duration::ZERO,
+            stamper: None,
         })
     }
 
@@ -128,7 +162,12 @@ impl Written {
                 }
                 self.last = now;
                 self.bytes += count as u64;
-                self.waiting.extend_from_slice(&buffer[..count]);
+                match &mut self.stamper {
+                    None => self.waiting.extend_from_slice(&buffer[..count]),
+                    Some(stamper) => {
+                        stamper.write(&buffer[..count], SystemTime::now(), &mut self.waiting);
+                    }
+                }
             }
             if flushed.elapsed() >= WRITTEN_EVERY {
                 self.flush()?;
@@ -177,5 +216,29 @@ impl Written {
             (self.last - first).as_secs_f64(),
             self.longest_silence.as_secs_f64()
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrivals_stand_before_sentences_that_begin_a_line() {
+        let at = UNIX_EPOCH + Duration::from_millis(1_604_000_000_123);
+        let mut stamper = Stamper::default();
+        let mut kept = Vec::new();
+        // A sentence in two pieces, another one in one with the next, and one with a block of its own.
+        for came in
+            ["$HEHDT,12", "3.4,T*2B\r\n$HEROT,0.0,A*2B\r\n\\s:HE0001*46\\$HEHDT", ",1,T*1\n"]
+        {
+            stamper.write(came.as_bytes(), at, &mut kept);
+        }
+        // The sum by an exclusive or in Python.
+        assert_eq!(
+            String::from_utf8(kept).unwrap(),
+            "\\c:1604000000123*6A\\$HEHDT,123.4,T*2B\r\n\\c:1604000000123*6A\\$HEROT,0.0,A*2B\r\n\
+             \\s:HE0001*46\\$HEHDT,1,T*1\n"
+        );
     }
 }

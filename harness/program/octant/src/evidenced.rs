@@ -112,7 +112,7 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
 /// Tells what was chosen in reading the files of a solution.
 fn tell_choices(scenario: &Scenario) -> Result<(), Failure> {
     let SourceSpec::Solution(spec) = &scenario.source else { return Ok(()) };
-    for trajectory in [&spec.solution, &spec.reference] {
+    for trajectory in std::iter::once(&spec.solution).chain(spec.reference.file()) {
         let path = trajectory.file.path(&scenario.folder).map_err(Failure::input)?;
         let reader = TrajectoryReader::open(&path, &trajectory.format).map_err(Failure::input)?;
         for choice in reader.choices() {

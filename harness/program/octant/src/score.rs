@@ -155,7 +155,7 @@ fn text(scores: &Scores, units: &DisplayUnits) -> String {
         out += &octant_run::assemble::parameter_lines(&scores.parameters);
     }
     if let Some(navigation) = &scores.navigation {
-        let (score, radial) = (&navigation.radial_error_nmi, units.radial());
+        let radial = units.radial();
         let _ = writeln!(
             out,
             "  navigation {} h, height held",
@@ -174,15 +174,17 @@ fn text(scores: &Scores, units: &DisplayUnits) -> String {
                 unit.name
             );
         }
-        let (digits, finer) = (radial.decimals, radial.decimals + 1);
-        let _ = writeln!(
-            out,
-            "    radial     max {:.digits$}, rms {:.digits$} {name}, {:.finer$} {name}/h",
-            radial.of(score.max),
-            radial.of(score.rms),
-            radial.of(score.rate_per_h),
-            name = radial.name
-        );
+        if let Some(score) = navigation.radial_error_nmi {
+            let (digits, finer) = (radial.decimals, radial.decimals + 1);
+            let _ = writeln!(
+                out,
+                "    radial     max {:.digits$}, rms {:.digits$} {name}, {:.finer$} {name}/h",
+                radial.of(score.max),
+                radial.of(score.rms),
+                radial.of(score.rate_per_h),
+                name = radial.name
+            );
+        }
     }
     out
 }

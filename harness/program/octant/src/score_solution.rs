@@ -14,11 +14,20 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(super) struct SolutionArguments {
     /// Solution of an instrument, instead of a run: columns of text (.csv), NMEA 0183 (.nmea), RTKLIB (.pos), SBET.
-    #[arg(long, value_name = "FILE", requires = "reference", conflicts_with = "run")]
+    #[arg(long, value_name = "FILE", conflicts_with = "run")]
     solution: Option<PathBuf>,
     /// Reference trajectory that the solution is scored against, in one of the same forms.
     #[arg(long, value_name = "FILE", requires = "solution")]
     reference: Option<PathBuf>,
+    /// True heading of an instrument that stands still, as the reference instead of a file, such as "123.45 deg".
+    #[arg(
+        long,
+        value_name = "ANGLE",
+        requires = "solution",
+        conflicts_with = "reference",
+        allow_hyphen_values = true
+    )]
+    true_heading: Option<String>,
     /// Scenario with requirements, uncertainties, and the columns of the files.
     #[arg(long, value_name = "SCENARIO", requires = "solution")]
     scenario: Option<PathBuf>,
@@ -63,6 +72,7 @@ pub(super) fn command(
     let SolutionArguments {
         solution,
         reference,
+        true_heading,
         scenario,
         duration,
         skip,
@@ -102,6 +112,7 @@ pub(super) fn command(
         ("source.trajectory.offset", offset),
         ("source.trajectory.offset_uncertainty", offset_uncertainty),
         ("source.solution.talker", talker),
+        ("source.trajectory.true_heading", true_heading),
     ];
     set.extend(
         keys.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?))),
@@ -158,12 +169,14 @@ fn found(path: &Path, text: Option<&str>, set: &[String]) -> Result<Vec<String>,
     // With all digits, so that the period comes out as the whole number of ns that it is.
     let rate = format!("{}", 1e9 / survey.period_ns as f64);
     let deg = |rad: f64| format!("{:.9} deg", rad.to_degrees());
-    Ok(vec![
-        format!("imu.rate={rate} Hz"),
-        format!("record.rate={rate} Hz"),
-        format!("site.latitude={}", deg(survey.first.latitude_rad)),
-        // Files may count from 0 to 360°, the scenario from -180 to 180.
-        format!("site.longitude={}", deg((survey.first.longitude_rad + PI).rem_euclid(TAU) - PI)),
-        format!("site.height={:.3} m", survey.first.height_m),
-    ])
+    let mut found = vec![format!("imu.rate={rate} Hz"), format!("record.rate={rate} Hz")];
+    if let Some(first) = survey.first.position {
+        found.extend([
+            format!("site.latitude={}", deg(first.latitude_rad)),
+            // Files may count from 0 to 360°, the scenario from -180 to 180.
+            format!("site.longitude={}", deg((first.longitude_rad + PI).rem_euclid(TAU) - PI)),
+            format!("site.height={:.3} m", first.height_m),
+        ]);
+    }
+    Ok(found)
 }

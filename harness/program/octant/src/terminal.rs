@@ -93,13 +93,3 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
         .map_err(|error| Failure::bench(format!("failed to write the result as JSON: {error}")))?;
     print(&(text + "\n"))
 }
-
-/// Prints an account: a line where every unit was used as it was found and at the configured rate, else a line for each repair
-/// and loss too.
-pub(crate) fn tell_account(account: &Account) {
-    note!("octant: {}", account.headline());
-    let is_off = account.clocked().is_some_and(ClockAccount::is_off);
-    if !account.is_plain() || !account.doubts().is_empty() || is_off {
-        account.lines().iter().skip(1).for_each(|line| note!("octant:   {line}"));
-    }
-}

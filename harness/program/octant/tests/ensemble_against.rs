@@ -107,6 +107,7 @@ impl Bench {
             faults: Vec::new(),
             inputs: Vec::new(),
             altered_streams: None,
+            heading: None,
             method: "eight".to_owned(),
             calibration: Some(CalibrationScore {
                 reference: None,
@@ -128,9 +129,15 @@ impl Bench {
             navigation: Some(NavigationScore {
                 duration_h: 1.0,
                 height: HeightChannel::Held,
-                latitude_error_arcmin: score,
-                longitude_error_arcmin: score,
-                radial_error_nmi: RadialScore { max: 0.0, rms: 0.0, r#final: 0.0, rate_per_h: 0.0 },
+                latitude_error_arcmin: Some(score),
+                longitude_error_arcmin: Some(score),
+                radial_error_nmi: Some(RadialScore {
+                    max: 0.0,
+                    rms: 0.0,
+                    r#final: 0.0,
+                    rate_per_h: 0.0,
+                }),
+                heading_output: None,
                 heading_error_arcmin: None,
                 pitch_error_arcmin: None,
                 roll_error_arcmin: None,

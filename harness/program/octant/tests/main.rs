@@ -95,6 +95,7 @@ mod reference_columns;
 mod rejudge;
 mod requirements_convert;
 mod rotation_reference;
+mod score_headings;
 mod score_solution;
 mod selftest;
 #[cfg(unix)]

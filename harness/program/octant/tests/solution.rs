@@ -189,8 +189,7 @@ fn scored(hours: f64, f: impl Fn(f64) -> f64) -> NavigationScore {
         let x = f(t_s);
         scorer.push(&DriftSample {
             t_s,
-            latitude_error_rad: 0.0,
-            longitude_error_rad: 0.0,
+            position_error_rad: Some([0.0, 0.0]),
             attitude_error: Some(CaseAngles {
                 heading_rad: x * ARCMIN,
                 pitch_rad: 0.0,
@@ -249,8 +248,7 @@ fn errors_that_are_not_known_have_no_score() {
     for k in 0..100u32 {
         scorer.push(&DriftSample {
             t_s: f64::from(k),
-            latitude_error_rad: 0.0,
-            longitude_error_rad: 0.0,
+            position_error_rad: Some([0.0, 0.0]),
             attitude_error: None,
             velocity_error_mps: (k != 50).then_some([0.0; 2]),
             latitude_rad: LATITUDE,
@@ -429,7 +427,8 @@ fn report_and_terminal_obey_the_units_and_the_summary_keeps_its_own() {
     // 0.05 arcmin a metre and more: the number is the score's in the other unit.
     let n = plain.summary.navigation.as_ref().unwrap();
     let arcmin_m = Ellipsoid::at(LATITUDE, 0.0).meridian_radius_m * ARCMIN;
-    let metres = format!("latitude  max {:.1}, rms", n.latitude_error_arcmin.max * arcmin_m);
+    let metres =
+        format!("latitude  max {:.1}, rms", n.latitude_error_arcmin.unwrap().max * arcmin_m);
     assert!(terminal[1].contains(&metres), "{metres}: {}", terminal[1]);
     let knots = n.velocity_north_error_mps.unwrap().max * 3600.0 / 1852.0;
     assert!(terminal[1].contains(&format!("north max {knots:.3}")), "{}", terminal[1]);

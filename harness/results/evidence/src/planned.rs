@@ -11,6 +11,9 @@ use octant_verdict::verdict::LimitCheck;
 /// Share by which an uncertainty may be below that of the plan: it went through text.
 const ROUNDING: f64 = 1e-9;
 
+/// Difference of two latitudes that are the same, deg: one went through text.
+const LATITUDE_DEG: f64 = 1e-9;
+
 /// Lists what a summary has otherwise than its scenario: requirements that were left out, added or changed, another rule of
 /// decision, an uncertainty below that of the plan.
 #[must_use]
@@ -32,7 +35,8 @@ pub fn unplanned(scenario: &Scenario, summary: &Summary) -> Vec<String> {
                     id: result.id.clone(),
                     measure: result.measure.clone(),
                     comparison: result.comparison,
-                    limit: result.limit,
+                    limit: result.written_limit(),
+                    secant_latitude: result.at_equator.is_some(),
                 }),
                 in_words(check)
             )),
@@ -45,6 +49,15 @@ pub fn unplanned(scenario: &Scenario, summary: &Summary) -> Vec<String> {
             "it has {}, scenario.toml has {unique}",
             counted(count as u64, "requirement", "requirements")
         ));
+    }
+    if let Some(heading) = &summary.heading {
+        let planned_deg = scenario.site.latitude_rad.to_degrees();
+        if !((heading.latitude_deg - planned_deg).abs() < LATITUDE_DEG) {
+            found.push(format!(
+                "its heading test is at a latitude of {} deg, the site of scenario.toml at {planned_deg} deg",
+                heading.latitude_deg
+            ));
+        }
     }
     let rule = scenario.decision.rule();
     if let Some(decision) = summary.decision.as_ref().filter(|decision| decision.rule != rule) {
@@ -65,12 +78,14 @@ const fn rule_name(rule: DecisionRule) -> &'static str {
 }
 
 fn is_of(result: &RequirementResult, check: &LimitCheck) -> bool {
-    (&result.measure, result.comparison, result.limit.to_bits())
-        == (&check.measure, check.comparison, check.limit.to_bits())
+    let has_secant = result.at_equator.is_some();
+    (&result.measure, result.comparison, result.written_limit().to_bits(), has_secant)
+        == (&check.measure, check.comparison, check.limit.to_bits(), check.secant_latitude)
 }
 
 fn in_words(check: &LimitCheck) -> String {
-    format!("{} {} {}", check.measure, check.comparison.sign(), check.limit)
+    let secant = if check.secant_latitude { " × sec φ" } else { "" };
+    format!("{} {} {}{secant}", check.measure, check.comparison.sign(), check.limit)
 }
 
 /// Describes a result whose uncertainty is below that which the scenario alone gives. What the run itself adds (the

@@ -18,7 +18,7 @@ use maud::{Markup, html};
 use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_evidence::discrepancy;
-use octant_score::summary::{CalibrationScore, HeightChannel, Summary};
+use octant_score::summary::{CalibrationScore, HeightChannel, NavigationScore, Summary};
 use octant_score::work::duration;
 use octant_verdict::Verdict;
 
@@ -136,21 +136,31 @@ pub fn what_was_done(summary: &Summary, units: &DisplayUnits) -> String {
         ),
         (None, None) => "The run gave neither a calibration nor a navigation.".to_owned(),
     };
+    let position = |n: &NavigationScore| {
+        let (north, east) = (n.latitude_error_arcmin?, n.longitude_error_arcmin?);
+        Some([in_unit(north.max, latitude), in_unit(east.max, longitude)])
+    };
     let second = match (&summary.navigation, &summary.calibration) {
-        (Some(n), _) => format!(
-            " Its largest errors were {} in latitude and {} in longitude{}.",
-            in_unit(n.latitude_error_arcmin.max, latitude),
-            in_unit(n.longitude_error_arcmin.max, longitude),
-            summary.baseline.as_ref().and_then(|b| b.navigation.as_ref().map(|m| (b, m))).map_or(
-                String::new(),
-                |(b, m)| format!(
-                    ", against {} and {} for {} on the same instrument with the same noise",
-                    in_unit(m.latitude_error_arcmin.max, latitude),
-                    in_unit(m.longitude_error_arcmin.max, longitude),
-                    b.label
+        (Some(n), _) => match (position(n), n.heading_error_arcmin) {
+            (Some([north, east]), _) => {
+                let other = summary.baseline.as_ref().and_then(|b| {
+                    let [north, east] = position(b.navigation.as_ref()?)?;
+                    Some(format!(
+                        ", against {north} and {east} for {} on the same instrument with the same noise",
+                        b.label
+                    ))
+                });
+                let other = other.unwrap_or_default();
+                format!(
+                    " Its largest errors were {north} in latitude and {east} in longitude{other}."
                 )
-            )
-        ),
+            }
+            (None, Some(heading)) => {
+                let largest = in_unit(heading.max, units.attitude());
+                format!(" Its largest heading error was {largest}.")
+            }
+            (None, None) => String::new(),
+        },
         (
             None,
             Some(CalibrationScore { worst_normalized_error: Some(worst), refused: None, .. }),
@@ -191,12 +201,18 @@ fn figures(summary: &Summary, units: &DisplayUnits) -> Markup {
             @if let Some(n) = &summary.navigation {
                 @let (latitude, longitude, radial) = (units.latitude(), units.longitude(), units.radial());
                 @let rate = format!("{}/h", radial.name);
-                (figure("Latitude error, largest", latitude.name, latitude.of(n.latitude_error_arcmin.max), 3,
-                    other_navigation.map(|o| latitude.of(o.latitude_error_arcmin.max))))
-                (figure("Longitude error, largest", longitude.name, longitude.of(n.longitude_error_arcmin.max), 3,
-                    other_navigation.map(|o| longitude.of(o.longitude_error_arcmin.max))))
-                (figure("Radial error rate", &rate, radial.of(n.radial_error_nmi.rate_per_h), 2,
-                    other_navigation.map(|o| radial.of(o.radial_error_nmi.rate_per_h))))
+                @if let Some(score) = n.latitude_error_arcmin {
+                    (figure("Latitude error, largest", latitude.name, latitude.of(score.max), 3,
+                        other_navigation.and_then(|o| Some(latitude.of(o.latitude_error_arcmin?.max)))))
+                }
+                @if let Some(score) = n.longitude_error_arcmin {
+                    (figure("Longitude error, largest", longitude.name, longitude.of(score.max), 3,
+                        other_navigation.and_then(|o| Some(longitude.of(o.longitude_error_arcmin?.max)))))
+                }
+                @if let Some(score) = n.radial_error_nmi {
+                    (figure("Radial error rate", &rate, radial.of(score.rate_per_h), 2,
+                        other_navigation.and_then(|o| Some(radial.of(o.radial_error_nmi?.rate_per_h)))))
+                }
                 @if let Some(heading) = n.heading_error_arcmin {
                     @let unit = units.attitude();
                     (figure("Heading error, largest", unit.name, unit.of(heading.max), 3,

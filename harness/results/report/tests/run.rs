@@ -116,8 +116,7 @@ fn navigation(residual_g_zz: f64, tilt_arcsec: f64) -> NavigationScore {
         let [latitude_error_rad, longitude_error_rad] = floor.propagate(initial, &error, t_s);
         scorer.push(&DriftSample {
             t_s,
-            latitude_error_rad,
-            longitude_error_rad,
+            position_error_rad: Some([latitude_error_rad, longitude_error_rad]),
             attitude_error: None,
             velocity_error_mps: None,
             latitude_rad: LATITUDE,
@@ -147,6 +146,7 @@ fn data() -> ReportData {
         faults: vec![],
         inputs: Vec::new(),
         altered_streams: None,
+        heading: None,
         method: "eight positions".to_owned(),
         calibration: Some(eight),
         navigation: Some(navigation(g(&truth()) - g(&estimate), 1.5)),

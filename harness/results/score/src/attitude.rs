@@ -97,6 +97,18 @@ fn case_in_body([azimuth_rad, roll_rad]: [f64; 2]) -> Quaternion<f64> {
 }
 
 impl CaseAngles {
+    /// A heading, or its error, without roll and pitch, which are NaN.
+    #[must_use]
+    pub const fn of_heading(heading_rad: f64) -> Self {
+        Self { heading_rad, pitch_rad: f64::NAN, roll_rad: f64::NAN }
+    }
+
+    /// Returns whether roll and pitch are known.
+    #[must_use]
+    pub const fn has_tilt(self) -> bool {
+        !(self.pitch_rad.is_nan() && self.roll_rad.is_nan())
+    }
+
     /// Attitude of the case from that of the body, `q_nb` (w, x, y, z), with gimbal angles (azimuth,
     /// roll), rad. Heading and roll are within ±π, pitch within ±π/2.
     #[must_use]

@@ -225,7 +225,7 @@ fn difference(
     height_m: f64,
 ) -> Option<DriftDifference> {
     faulted.navigation?;
-    let twin_radial_max_nmi = twin.navigation?.radial_error_nmi.max;
+    let twin_radial_max_nmi = twin.navigation?.radial_error_nmi?.max;
     let earth = Ellipsoid::at(latitude_rad, height_m);
     let rows = faulted.trace.minus(twin.trace);
     let (mut latitude_max, mut longitude_max, mut radial_max_m) = (0.0f64, 0.0f64, 0.0f64);

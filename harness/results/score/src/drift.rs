@@ -19,11 +19,9 @@ pub const MARKS_H: [u32; 2] = [24, 72];
 pub struct DriftSample {
     /// Time since the start of the navigation, s.
     pub t_s: f64,
-    /// Latitude error, rad.
-    pub latitude_error_rad: f64,
-    /// Longitude error, rad.
-    pub longitude_error_rad: f64,
-    /// Attitude error of the case; `None` if it isn't known.
+    /// Errors of latitude and longitude, rad; `None` if they aren't known.
+    pub position_error_rad: Option<[f64; 2]>,
+    /// Attitude error of the case; `None` if it isn't known. Roll and pitch are NaN where the heading alone is.
     pub attitude_error: Option<CaseAngles>,
     /// Error of the velocity over ground, north and east, m/s; `None` if it isn't known.
     pub velocity_error_mps: Option<[f64; 2]>,
@@ -117,8 +115,12 @@ pub struct DriftScorer {
     first_s: f64,
     previous: Option<Errors>,
     extents: [Extent; ERRORS],
-    /// True as long as every sample has had an attitude error.
+    /// True as long as every sample has had a position error.
+    position: bool,
+    /// True as long as every sample has had a heading error.
     attitude: bool,
+    /// True as long as every sample has had errors of roll and pitch.
+    tilt: bool,
     /// True as long as every sample has had a velocity error.
     velocity: bool,
     radial: Extent,
@@ -158,7 +160,9 @@ impl DriftScorer {
             first_s: 0.0,
             previous: None,
             extents: [Extent::default(); ERRORS],
+            position: true,
             attitude: true,
+            tilt: true,
             velocity: true,
             radial: Extent::default(),
             radial_time: 0.0,
@@ -187,13 +191,18 @@ impl DriftScorer {
             return;
         }
         let earth = Ellipsoid::at(sample.latitude_rad, sample.height_m);
-        let north_m = sample.latitude_error_rad * earth.meridian_radius_m;
-        let east_m = sample.longitude_error_rad * earth.transverse_radius_m * earth.cos_latitude;
-        let attitude = sample.attitude_error.unwrap_or_default();
+        let [latitude_rad, longitude_rad] = sample.position_error_rad.unwrap_or_default();
+        let north_m = latitude_rad * earth.meridian_radius_m;
+        let east_m = longitude_rad * earth.transverse_radius_m * earth.cos_latitude;
+        let mut attitude = sample.attitude_error.unwrap_or_default();
+        let tilt = sample.attitude_error.is_some_and(CaseAngles::has_tilt);
+        if !tilt {
+            (attitude.pitch_rad, attitude.roll_rad) = (0.0, 0.0);
+        }
         let [north_mps, east_mps] = sample.velocity_error_mps.unwrap_or_default();
         let mut each = [0.0; ERRORS];
-        each[LATITUDE] = sample.latitude_error_rad / ARCMIN;
-        each[LONGITUDE] = sample.longitude_error_rad / ARCMIN;
+        each[LATITUDE] = latitude_rad / ARCMIN;
+        each[LONGITUDE] = longitude_rad / ARCMIN;
         each[HEADING] = attitude.heading_rad / ARCMIN;
         each[PITCH] = attitude.pitch_rad / ARCMIN;
         each[ROLL] = attitude.roll_rad / ARCMIN;
@@ -228,7 +237,9 @@ impl DriftScorer {
         }
         self.samples += 1;
         self.between.scored();
+        self.position &= sample.position_error_rad.is_some();
         self.attitude &= sample.attitude_error.is_some();
+        self.tilt &= tilt;
         self.velocity &= sample.velocity_error_mps.is_some();
         for (extent, error) in self.extents.iter_mut().zip(&each) {
             extent.take(*error);
@@ -239,7 +250,9 @@ impl DriftScorer {
         self.slope
             .get_or_insert_with(|| SecularSlope::new(sample.latitude_rad, sample.height_m))
             .push(now.t_s, &each);
-        self.series.push([now.t_s / 3600.0, each[LATITUDE], each[LONGITUDE]]);
+        if sample.position_error_rad.is_some() {
+            self.series.push([now.t_s / 3600.0, each[LATITUDE], each[LONGITUDE]]);
+        }
         self.previous = Some(now);
     }
 
@@ -345,8 +358,13 @@ impl DriftScorer {
             slope_per_day: slopes.map(|s| s.per_day[error]),
             schuler_amplitude: slopes.and_then(|s| Some(s.schuler?[error])),
         };
-        let attitude = |error: usize| self.attitude.then(|| score(error));
-        let velocity = |error: usize| self.velocity.then(|| score(error));
+        let scored = |error: usize| match error {
+            HEADING => self.attitude,
+            PITCH | ROLL => self.tilt,
+            NORTH | EAST => self.velocity,
+            _ => self.position,
+        };
+        let known = |error: usize| scored(error).then(|| score(error));
         let extent = |name, extent: &Extent| Some((name, extent.max, extent.rms(duration_s)));
         let names = [
             "latitude_error_arcmin",
@@ -357,41 +375,41 @@ impl DriftScorer {
             "velocity_north_error_mps",
             "velocity_east_error_mps",
         ];
+        // Marks are of positions alone.
+        let none = BTreeMap::new();
+        let marks = if self.position { &self.marks } else { &none };
         let gaps = self.gaps.as_ref().and_then(|gaps| {
-            let mut scores = [extent("radial_error_nmi", &self.radial); gaps::ERRORS];
+            let radial = extent("radial_error_nmi", &self.radial).filter(|_| self.position);
+            let mut scores = [radial; gaps::ERRORS];
             for (error, name) in names.into_iter().enumerate() {
-                let scored = match error {
-                    HEADING | PITCH | ROLL => self.attitude,
-                    NORTH | EAST => self.velocity,
-                    _ => true,
-                };
-                scores[error] = extent(name, &self.extents[error]).filter(|_| scored);
+                scores[error] = extent(name, &self.extents[error]).filter(|_| scored(error));
             }
-            gaps.score(scores, duration_s, &self.marks)
+            gaps.score(scores, duration_s, marks)
         });
         Ok(NavigationScore {
             gaps: gaps.map(Box::new),
+            heading_output: None,
             duration_h: duration_s / 3600.0,
             height,
-            latitude_error_arcmin: score(LATITUDE),
-            longitude_error_arcmin: score(LONGITUDE),
-            heading_error_arcmin: attitude(HEADING),
-            pitch_error_arcmin: attitude(PITCH),
-            roll_error_arcmin: attitude(ROLL),
-            velocity_north_error_mps: velocity(NORTH),
-            velocity_east_error_mps: velocity(EAST),
-            radial_error_nmi: RadialScore {
+            latitude_error_arcmin: known(LATITUDE),
+            longitude_error_arcmin: known(LONGITUDE),
+            heading_error_arcmin: known(HEADING),
+            pitch_error_arcmin: known(PITCH),
+            roll_error_arcmin: known(ROLL),
+            velocity_north_error_mps: known(NORTH),
+            velocity_east_error_mps: known(EAST),
+            radial_error_nmi: self.position.then(|| RadialScore {
                 max: self.radial.max.max(between.radial_nmi),
                 rms: self.radial.rms(duration_s),
                 r#final: last.radial_nmi,
                 rate_per_h: 3600.0 * self.radial_time / self.time_square,
-            },
+            }),
             slope_window: slopes.map(|s| SlopeWindow {
                 of: if s.sidereal { "sidereal days" } else { "schuler periods" }.to_owned(),
                 periods: s.periods,
                 hours: s.window_s / 3600.0,
             }),
-            marks: self.marks.clone(),
+            marks: marks.clone(),
             series_hours: self.series.points(),
         })
     }

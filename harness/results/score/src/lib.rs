@@ -28,6 +28,7 @@ pub mod every_answer;
 mod finding;
 pub mod floor;
 mod gaps;
+pub mod heading_output;
 pub mod health;
 pub mod judge;
 pub mod junit;

@@ -1,5 +1,6 @@
 //! Results of navigation.
 
+use super::heading_output::HeadingOutputScore;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -22,14 +23,17 @@ pub struct NavigationScore {
     pub duration_h: f64,
     /// Treatment of the vertical channel.
     pub height: HeightChannel,
-    /// Latitude error, arcmin.
-    pub latitude_error_arcmin: ErrorScore,
+    /// Latitude error, arcmin; null for headings alone. Longitude and radial error likewise.
+    #[serde(default)]
+    pub latitude_error_arcmin: Option<ErrorScore>,
     /// Longitude error, arcmin.
-    pub longitude_error_arcmin: ErrorScore,
+    #[serde(default)]
+    pub longitude_error_arcmin: Option<ErrorScore>,
     /// Horizontal distance from the true position, nmi.
-    pub radial_error_nmi: RadialScore,
+    #[serde(default)]
+    pub radial_error_nmi: Option<RadialScore>,
     /// Heading error of the case, arcmin; null without a true attitude, and where the unit doesn't
-    /// tell its attitude. Pitch and roll likewise.
+    /// tell its attitude. Pitch and roll likewise, and for headings alone.
     #[serde(default)]
     pub heading_error_arcmin: Option<ErrorScore>,
     /// Pitch error of the case, arcmin.
@@ -52,6 +56,9 @@ pub struct NavigationScore {
     /// Gaps of a solution that was made elsewhere, and what they leave open; left out without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaps: Option<Box<GapScore>>,
+    /// Output of the heading against a reference that turns: latency, follow-up, transmission; left out without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heading_output: Option<Box<HeadingOutputScore>>,
     /// Rows of time (h), latitude error, longitude error (arcmin): at most 2002, including every
     /// extreme.
     pub series_hours: Vec<[f64; 3]>,
@@ -63,8 +70,8 @@ impl NavigationScore {
     #[must_use]
     pub fn errors(&self) -> [(&'static str, &'static str, Option<ErrorScore>); 7] {
         [
-            ("latitude", "arcmin", Some(self.latitude_error_arcmin)),
-            ("longitude", "arcmin", Some(self.longitude_error_arcmin)),
+            ("latitude", "arcmin", self.latitude_error_arcmin),
+            ("longitude", "arcmin", self.longitude_error_arcmin),
             ("heading", "arcmin", self.heading_error_arcmin),
             ("pitch", "arcmin", self.pitch_error_arcmin),
             ("roll", "arcmin", self.roll_error_arcmin),

@@ -22,8 +22,7 @@ fn scored(hours: f64, dt_s: f64, f: impl Fn(f64) -> [f64; 2]) -> NavigationScore
         let [latitude, longitude] = f(t_s);
         scorer.push(&DriftSample {
             t_s,
-            latitude_error_rad: latitude * ARCMIN,
-            longitude_error_rad: longitude * ARCMIN,
+            position_error_rad: Some([latitude * ARCMIN, longitude * ARCMIN]),
             attitude_error: None,
             velocity_error_mps: None,
             latitude_rad: LATITUDE,
@@ -41,17 +40,17 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
 fn a_ramp_has_the_scores_of_a_ramp() {
     // 1.2 arcmin of latitude in 24 h. rms of a ramp is its end over √3.
     let n = scored(24.0, 60.0, |t| [1.2 * t / 86_400.0, 0.0]);
-    let lat = n.latitude_error_arcmin;
+    let lat = n.latitude_error_arcmin.unwrap();
     assert_near(lat.max, 1.2, 1e-12);
     assert_near(lat.r#final, 1.2, 1e-12);
     assert_near(lat.rms, 1.2 / 3f64.sqrt(), 1e-9);
     assert_near(lat.slope_per_day.unwrap(), 1.2, 1e-9);
-    assert_near(n.longitude_error_arcmin.slope_per_day.unwrap(), 0.0, 1e-12);
+    assert_near(n.longitude_error_arcmin.unwrap().slope_per_day.unwrap(), 0.0, 1e-12);
     // 1.2 arcmin along the meridian: R_M(30.5°) = 6351862.351 m (golden), 1852 m a mile.
     let nmi = 1.2 / 60.0 * PI / 180.0 * 6_351_862.351_147_001 / 1852.0;
-    assert_near(n.radial_error_nmi.max, nmi, 1e-9);
-    assert_near(n.radial_error_nmi.rate_per_h, nmi / 24.0, 1e-10);
-    assert_near(n.radial_error_nmi.rms, nmi / 3f64.sqrt(), 1e-9);
+    assert_near(n.radial_error_nmi.unwrap().max, nmi, 1e-9);
+    assert_near(n.radial_error_nmi.unwrap().rate_per_h, nmi / 24.0, 1e-10);
+    assert_near(n.radial_error_nmi.unwrap().rms, nmi / 3f64.sqrt(), 1e-9);
 }
 
 #[test]
@@ -59,8 +58,8 @@ fn longitude_counts_by_the_cosine_of_latitude_in_distance() {
     let n = scored(2.0, 1.0, |_| [0.0, 3.0]);
     let earth = Ellipsoid::at(LATITUDE, 0.0);
     let nmi = 3.0 * ARCMIN * earth.transverse_radius_m * LATITUDE.cos() / 1852.0;
-    assert_near(n.radial_error_nmi.max, nmi, 1e-9);
-    assert_near(n.radial_error_nmi.rms, nmi, 1e-9);
+    assert_near(n.radial_error_nmi.unwrap().max, nmi, 1e-9);
+    assert_near(n.radial_error_nmi.unwrap().rms, nmi, 1e-9);
 }
 
 #[test]
@@ -75,8 +74,8 @@ fn slopes_see_through_schuler_and_earth_oscillations() {
                 -0.365 * t / 86_400.0 + 0.3 * (schuler * t).cos() - earth,
             ]
         });
-        assert_near(n.latitude_error_arcmin.slope_per_day.unwrap(), 0.2, 1e-6);
-        assert_near(n.longitude_error_arcmin.slope_per_day.unwrap(), -0.365, 1e-6);
+        assert_near(n.latitude_error_arcmin.unwrap().slope_per_day.unwrap(), 0.2, 1e-6);
+        assert_near(n.longitude_error_arcmin.unwrap().slope_per_day.unwrap(), -0.365, 1e-6);
         let window = n.slope_window.unwrap();
         assert_eq!(window.of == "sidereal days", hours > 23.95, "{hours} h: {window:?}");
         assert!(window.hours <= hours);
@@ -87,15 +86,15 @@ fn slopes_see_through_schuler_and_earth_oscillations() {
 fn below_a_schuler_period_there_is_no_slope() {
     let n = scored(1.4, 1.0, |t| [t, t]);
     assert_eq!(n.slope_window, None);
-    assert_eq!(n.latitude_error_arcmin.slope_per_day, None);
+    assert_eq!(n.latitude_error_arcmin.unwrap().slope_per_day, None);
     assert!(scored(1.41, 1.0, |t| [t, t]).slope_window.is_some(), "84.33 min are 1.4055 h");
 }
 
 #[test]
 fn the_rms_of_whole_periods_of_a_sine_is_its_amplitude_over_root_two() {
     let n = scored(5.0, 10.0, |t| [2.0 * (2.0 * PI * t / 3600.0).sin(), 0.0]);
-    assert_near(n.latitude_error_arcmin.rms, 2.0 / 2f64.sqrt(), 1e-4);
-    assert_near(n.latitude_error_arcmin.max, 2.0, 1e-4);
+    assert_near(n.latitude_error_arcmin.unwrap().rms, 2.0 / 2f64.sqrt(), 1e-4);
+    assert_near(n.latitude_error_arcmin.unwrap().max, 2.0, 1e-4);
 }
 
 #[test]
@@ -119,8 +118,7 @@ fn marks_hold_the_error_there_and_the_largest_before() {
 fn what_is_not_a_drift_is_told() {
     let sample = |t_s: f64, latitude_error_rad: f64| DriftSample {
         t_s,
-        latitude_error_rad,
-        longitude_error_rad: 0.0,
+        position_error_rad: Some([latitude_error_rad, 0.0]),
         attitude_error: None,
         velocity_error_mps: None,
         latitude_rad: LATITUDE,

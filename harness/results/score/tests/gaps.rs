@@ -23,8 +23,7 @@ fn scored(
         let [position_m, velocity_mps] = error(second);
         scorer.push(&DriftSample {
             t_s: second,
-            latitude_error_rad: position_m / earth.meridian_radius_m,
-            longitude_error_rad: 0.0,
+            position_error_rad: Some([position_m / earth.meridian_radius_m, 0.0]),
             attitude_error: None,
             velocity_error_mps: Some([velocity_mps, 0.0]),
             latitude_rad: LATITUDE,

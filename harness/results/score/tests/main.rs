@@ -13,6 +13,7 @@ mod drift;
 mod equipment;
 mod every_answer;
 mod gaps;
+mod heading_output;
 mod health;
 mod junit;
 mod numerics;

@@ -29,12 +29,38 @@ pub enum TrajectoryFormat {
 }
 
 /// Sentences of an NMEA file that count.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct NmeaChoice {
     /// Letters of the talker; `None`: all, which have to agree.
     pub talker: Option<String>,
-    /// True if estimated positions (dead reckoning) are left out, as in a reference.
+    /// True if estimated positions and headings (dead reckoning) are left out, as in a reference.
     pub fixes_alone: bool,
+    /// Sentences that make a point each; `None`: positions, where the file has some, else headings.
+    pub points: Option<NmeaPoints>,
+    /// Time of headings that have none of their own; `None`: the first way that the file allows.
+    pub heading_time: Option<HeadingTime>,
+}
+
+/// Sentences of an NMEA file that make a point each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NmeaPoints {
+    /// Positions, each with the heading that follows it.
+    Positions,
+    /// Headings, each alone.
+    Headings,
+}
+
+/// Time of a heading that has none of its own, such as that of HDT and THS.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HeadingTime {
+    /// Parameter `c` of the TAG block before the sentence.
+    Tag,
+    /// The stamp that a logger wrote before the sentence.
+    Stamp,
+    /// The sentences with a time of day around it: headings are evenly spread from one to the next.
+    Cycle,
+    /// An even rate, Hz, from a first time on, ns since 1970, UTC; without one from zero.
+    Rate(f64, Option<i64>),
 }
 
 /// Columns of a text file; `None`: the name that Octant's exports have, where the header has it.
@@ -63,6 +89,31 @@ pub struct TrajectoryColumns {
     pub velocity_mps: f64,
 }
 
+/// Reference of a solution.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReferenceSpec {
+    /// A file.
+    File(TrajectorySpec),
+    /// A heading that was surveyed, of an instrument that stands still.
+    Heading {
+        /// True heading, rad.
+        heading_rad: f64,
+        /// Its expanded uncertainty (95 %), rad.
+        uncertainty_rad: Option<f64>,
+    },
+}
+
+impl ReferenceSpec {
+    /// The file, where there is one.
+    #[must_use]
+    pub fn file(&self) -> Option<&TrajectorySpec> {
+        match self {
+            Self::File(spec) => Some(spec),
+            Self::Heading { .. } => None,
+        }
+    }
+}
+
 /// A solution, and the trajectory that it is scored against.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolutionSpec {
@@ -71,7 +122,7 @@ pub struct SolutionSpec {
     /// Time at its beginning that isn't scored, ns.
     pub skip_ns: i64,
     /// The reference.
-    pub reference: TrajectorySpec,
+    pub reference: ReferenceSpec,
     /// Time added to the solution's times to get those of the reference, ns; `None`: nothing, if both
     /// tell the time on a scale that is known.
     pub offset_ns: Option<i64>,

@@ -73,6 +73,9 @@ impl Scenario {
                 ("comparison", text(check.comparison.sign().to_owned())),
                 ("limit", Value::Number(check.limit)),
             ];
+            if check.secant_latitude {
+                entries.push(("secant_latitude", Value::Boolean(true)));
+            }
             entries.extend(clause.iter().map(|clause| ("clause", text(clause.clone()))));
             node(table(entries))
         });

@@ -71,7 +71,11 @@ impl TimeDoubt {
     /// Expanded uncertainty that follows for a measure of the navigation, in its unit.
     fn of(&self, bare: &str, against: &NavigationContext) -> f64 {
         let Self { uncertainty_s, speed_mps, acceleration_mps2, turning_radps } = *self;
-        if is_of_position(bare) {
+        if bare.ends_with("heading_output.latency_s") {
+            uncertainty_s
+        } else if bare.contains("heading_output.") {
+            (turning_radps * uncertainty_s).to_degrees()
+        } else if is_of_position(bare) {
             of_position(bare, speed_mps * uncertainty_s, against)
         } else if bare.contains("velocity") {
             over_time(bare, acceleration_mps2 * uncertainty_s, against)
@@ -109,14 +113,14 @@ impl Decision {
         against: &NavigationContext,
     ) -> Result<f64, UnknownUncertainty> {
         let bare = measure.trim_matches('|');
-        let of_timing =
-            against.timing.filter(|_| is_referred(bare) && bare.contains("navigation."));
+        let is_timed = is_referred(bare) || bare.ends_with("heading_output.latency_s");
+        let of_timing = against.timing.filter(|_| is_timed && bare.contains("navigation."));
         let of_timing = of_timing.map_or(0.0, |timing| timing.of(bare, against));
         if let Some(stated) = self.uncertainties.iter().find(|stated| stated.measure == bare) {
             return Ok(libm::hypot(stated.uncertainty, of_timing));
         }
         if !is_referred(bare) {
-            return Ok(0.0);
+            return Ok(of_timing);
         }
         match self.position_m {
             Some(position_m) if bare.contains("navigation.") && is_of_position(bare) => {
@@ -177,7 +181,13 @@ impl Decision {
 fn is_referred(bare: &str) -> bool {
     let own = bare.strip_prefix("baseline.").unwrap_or(bare);
     let name = own.rsplit('.').next().unwrap_or(own);
+    // Times of a reference, and the numbers of the output itself.
+    let of_itself = matches!(
+        name,
+        "latency_s" | "latency_uncertainty_s" | "resolution_deg" | "points" | "rate_max_degps"
+    );
     match own.split('.').next() {
+        Some("navigation") if own.contains("heading_output.") && of_itself => false,
         Some("navigation") => !own.contains("slope_window") && name != "duration_h",
         Some("alignment") => matches!(name, "error" | "normalized"),
         Some("calibration") => {

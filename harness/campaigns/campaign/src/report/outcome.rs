@@ -87,7 +87,7 @@ impl ReadOutcome {
         outcome.unfired =
             faults.into_iter().filter(|fault| !fault.fired).map(|fault| fault.id).collect();
         outcome.stream_hash = Some(stream_hash);
-        outcome.drift = navigation.as_ref().map(CaseDrift::of);
+        outcome.drift = navigation.as_ref().and_then(CaseDrift::of);
         let curve = navigation.and_then(|navigation| Curve::of(&navigation.series_hours));
         Self { outcome, curve }
     }
@@ -116,13 +116,13 @@ impl RowOutcome {
 }
 
 impl CaseDrift {
-    /// Extracts the drift without the errors over time.
-    fn of(navigation: &NavigationScore) -> Self {
-        let radial = &navigation.radial_error_nmi;
+    /// Extracts the drift without the errors over time; `None` for headings alone.
+    fn of(navigation: &NavigationScore) -> Option<Self> {
+        let radial = navigation.radial_error_nmi?;
         let marks = navigation.marks.iter().map(|(name, mark)| (name.clone(), mark.radial_nmi));
         // Latitude and longitude come first.
         let solution = navigation.errors().into_iter().skip(2);
-        Self {
+        Some(Self {
             solution: solution
                 .filter_map(|(name, unit, score)| Some((name, unit, score?.max)))
                 .collect(),
@@ -133,6 +133,6 @@ impl CaseDrift {
             rate_nmi_per_h: radial.rate_per_h,
             marks_nmi: marks.collect(),
             curve: None,
-        }
+        })
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn found(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError
         words.push("--force");
         let ran = bench.run(PERFECT, &words)?;
         let navigation = ran.summary()?.navigation.as_ref().ok_or("find the navigation")?;
-        let worst = navigation.radial_error_nmi.max;
+        let worst = navigation.radial_error_nmi.ok_or("find the radial error")?.max;
         outcome.numbers.insert(format!("radial error {name}"), worst);
     }
     Ok(outcome)

@@ -58,8 +58,10 @@ fn drift(all: &mut Found, hours: u32) -> Result<(), String> {
         }
         scorer.push(&DriftSample {
             t_s,
-            latitude_error_rad: latitude * black_box(RAD_PER_ARCMIN),
-            longitude_error_rad: longitude * black_box(RAD_PER_ARCMIN),
+            position_error_rad: Some([
+                latitude * black_box(RAD_PER_ARCMIN),
+                longitude * black_box(RAD_PER_ARCMIN),
+            ]),
             attitude_error: Some(CaseAngles {
                 heading_rad: 2.0 * latitude * black_box(RAD_PER_ARCMIN),
                 pitch_rad: -longitude * black_box(RAD_PER_ARCMIN),
@@ -81,7 +83,7 @@ fn drift(all: &mut Found, hours: u32) -> Result<(), String> {
         let schuler = score.schuler_amplitude.ok_or("find the Schuler part")?;
         put(&format!("{axis} schuler amplitude"), schuler);
     }
-    let radial = scores.radial_error_nmi;
+    let radial = scores.radial_error_nmi.ok_or("find the radial error")?;
     put("radial max", radial.max);
     put("radial rms", radial.rms);
     put("radial final", radial.r#final);

@@ -312,6 +312,7 @@ impl Endpoint for FmuEndpoint {
             position: answers.position[..2].iter().any(Option::is_some),
             velocity: answers.velocity.is_some(),
             attitude: answers.attitude.is_some(),
+            tilt: true,
             follows: true,
         }
     }

@@ -1,6 +1,6 @@
 //! Parts of a run's stream that are kept.
 
-use crate::observers::{TELLS_ATTITUDE, TELLS_VELOCITY};
+use crate::observers::{TELLS_ATTITUDE, TELLS_POSITION, TELLS_TILT, TELLS_VELOCITY};
 use octant_endpoint::Tells;
 use octant_recorder::{Policy, Recorder, RecorderError, RecorderOptions, Samples};
 use octant_scenario::resolve::DrawnValues;
@@ -64,8 +64,12 @@ pub(crate) fn recorder_options(
             (TELLS_VELOCITY, tells.velocity.to_string()),
             (TELLS_ATTITUDE, tells.attitude.to_string()),
         ]
+        .into_iter()
+        // Of headings alone.
+        .chain((!tells.position).then(|| (TELLS_POSITION, false.to_string())))
+        .chain((!tells.tilt).then(|| (TELLS_TILT, false.to_string())))
         .map(|(key, value)| (key.to_owned(), value))
-        .into(),
+        .collect(),
         publishing: record.topics_period_ns.map(|period_ns| {
             let truth = true_parameters.then_some(draws.parameters);
             publishing(About::of_run(scenario, method, seed, truth), period_ns)

@@ -1,10 +1,9 @@
 //! Errors of the last navigation against the truth, and how quickly that changes.
 
-use super::solution::errors;
+use super::solution::{SolutionErrors, errors};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_endpoint::Tells;
 use octant_sample::{Mode, Navigation, Output, Truth};
-use octant_score::attitude::CaseAngles;
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::every_answer::{AnsweredSolution, StandingTruth};
 use octant_score::run_series::SolutionSeries;
@@ -41,7 +40,7 @@ impl NavigationDrift {
         Self { period_s, scorer, ..Self::default() }
     }
 
-    /// Takes the truth at an answer with the errors of its attitude and velocity; returns the sample, if it counts.
+    /// Takes the truth at an answer with the errors of its solution; returns the sample, if it counts.
     ///
     /// A drift is a function of time: stamps that a fault puts before the last scored one are left out, as are those of
     /// a restarted core.
@@ -49,9 +48,9 @@ impl NavigationDrift {
         &mut self,
         output: &Output,
         truth: &Truth,
-        attitude_error: Option<CaseAngles>,
-        velocity_error_mps: Option<[f64; 2]>,
+        solution: &SolutionErrors,
     ) -> Option<DriftSample> {
+        let SolutionErrors { position_error_rad, attitude_error, velocity_error_mps } = *solution;
         let (start_ns, now_ns) = (self.start_ns?, output.device_time.ns);
         if now_ns < start_ns
             || self.scored_ns.is_some_and(|scored_ns| now_ns <= scored_ns)
@@ -62,14 +61,19 @@ impl NavigationDrift {
         self.scored_ns = Some(now_ns);
         self.moved.push(now_ns, truth);
         self.samples += 1;
+        // Where positions aren't compared, the unit stands where it says.
+        let (latitude_rad, height_m) = if truth.latitude_rad.is_finite() {
+            (truth.latitude_rad, truth.height_m)
+        } else {
+            (output.navigation.latitude_rad, output.navigation.height_m)
+        };
         let sample = DriftSample {
             t_s: (now_ns - start_ns) as f64 * 1e-9,
-            latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
-            longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
+            position_error_rad,
             attitude_error,
             velocity_error_mps,
-            latitude_rad: truth.latitude_rad,
-            height_m: truth.height_m,
+            latitude_rad,
+            height_m,
         };
         self.solution.push(sample.t_s / 3600.0, errors(attitude_error, velocity_error_mps));
         self.scorer.push(&sample);

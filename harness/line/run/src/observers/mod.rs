@@ -34,7 +34,7 @@ use self::gimbals::GimbalSeries;
 use self::heading::HeadingReadings;
 use self::measurements::Measurements;
 use self::moments::{Moment, Moments};
-use self::solution::{attitude_error, errors, velocity_error};
+use self::solution::{SolutionErrors, attitude_error, errors, position_error, velocity_error};
 use octant_endpoint::Tells;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Innovation, Mode, NavigationCovariance, Output, Truth};
@@ -49,6 +49,10 @@ const SCORE_PERIOD_NS: u64 = 1_000_000_000;
 pub(crate) const TELLS_VELOCITY: &str = "tells_velocity";
 /// Key of a recording's metadata: whether the unit tells its attitude.
 pub(crate) const TELLS_ATTITUDE: &str = "tells_attitude";
+/// Key of a recording's metadata, in that of a solution that was made elsewhere: whether it tells its position.
+pub(crate) const TELLS_POSITION: &str = "tells_position";
+/// Likewise: whether it tells roll and pitch.
+pub(crate) const TELLS_TILT: &str = "tells_tilt";
 
 /// The observers of one run.
 #[derive(Clone, Debug)]
@@ -161,6 +165,8 @@ impl Observers {
         let told = |key: &str| run.get(key).is_none_or(|text| text != "false");
         self.tells.velocity = told(TELLS_VELOCITY);
         self.tells.attitude = told(TELLS_ATTITUDE);
+        self.tells.position = told(TELLS_POSITION);
+        self.tells.tilt = told(TELLS_TILT);
         self.moments.unit_tells(self.tells);
     }
 
@@ -333,10 +339,14 @@ impl Observers {
         if let Some(filtered) = &mut self.charts.filtered {
             filtered.errors(output, errors(attitude_error, velocity_error_mps));
         }
-        let sample = self.drift.truth(output, truth, attitude_error, velocity_error_mps);
+        let position_error_rad = position_error(self.tells, output, truth);
+        let errors = SolutionErrors { position_error_rad, attitude_error, velocity_error_mps };
+        let sample = self.drift.truth(output, truth, &errors);
         self.drift.stand(self.tells, truth);
-        if let (Some(trace), Some(sample)) = (&mut self.trace, sample) {
-            trace.drift(sample.t_s, sample.latitude_error_rad, sample.longitude_error_rad);
+        if let (Some(trace), Some(sample)) = (&mut self.trace, sample)
+            && let Some([latitude_error_rad, longitude_error_rad]) = sample.position_error_rad
+        {
+            trace.drift(sample.t_s, latitude_error_rad, longitude_error_rad);
         }
     }
 

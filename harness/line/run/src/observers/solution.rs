@@ -5,11 +5,34 @@ use octant_endpoint::Tells;
 use octant_sample::{Output, Truth};
 use octant_score::attitude::CaseAngles;
 
-/// Attitude error of the case; `None` where unit or source don't tell an attitude.
+/// Attitude error of the case, with NaN for roll and pitch where they aren't told; `None` where unit or source don't tell an attitude.
 pub(super) fn attitude_error(tells: Tells, output: &Output, truth: &Truth) -> Option<CaseAngles> {
     let known = tells.attitude && truth.q_nb.iter().all(|q| q.is_finite());
     let computed = output.navigation.q_nb;
-    known.then(|| CaseAngles::error(computed, truth.q_nb, truth.gimbal_rad))
+    known.then(|| {
+        let error = CaseAngles::error(computed, truth.q_nb, truth.gimbal_rad);
+        // Roll and pitch of a heading alone are those of no one.
+        if tells.tilt { error } else { CaseAngles::of_heading(error.heading_rad) }
+    })
+}
+
+/// Errors of a solution at one time, as far as they are known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SolutionErrors {
+    /// Latitude and longitude, rad.
+    pub(super) position_error_rad: Option<[f64; 2]>,
+    /// Attitude of the case.
+    pub(super) attitude_error: Option<CaseAngles>,
+    /// Velocity over ground, north and east, m/s.
+    pub(super) velocity_error_mps: Option<[f64; 2]>,
+}
+
+/// Error of latitude and longitude, rad; `None` where the unit doesn't tell a position.
+pub(super) fn position_error(tells: Tells, output: &Output, truth: &Truth) -> Option<[f64; 2]> {
+    let computed = &output.navigation;
+    tells.position.then(|| {
+        [computed.latitude_rad - truth.latitude_rad, computed.longitude_rad - truth.longitude_rad]
+    })
 }
 
 /// Error of the velocity over ground, north and east, m/s; `None` where unit or source don't tell a

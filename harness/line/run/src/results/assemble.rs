@@ -1,6 +1,6 @@
 //! Assembles summary, report and verdict from the methods of a run.
 
-use super::compared::{band, stated};
+use super::compared::{band, digits, heading_output, output_path, stated, timing};
 use super::difference::difference;
 use super::findings::findings;
 use super::method::MethodRun;
@@ -30,7 +30,7 @@ use octant_score::summary::{
 };
 use octant_turntable::TableAxis;
 use octant_verdict::Verdict;
-use octant_verdict::decision::{DecisionRule, NavigationContext, TimeDoubt};
+use octant_verdict::decision::{DecisionRule, NavigationContext};
 use octant_verdict::equipment::Day;
 use std::collections::BTreeMap;
 
@@ -152,6 +152,10 @@ pub fn assemble_with(
     let baseline_calibration_errors =
         baseline.as_ref().map_or_else(SolutionSeries::default, filtered);
     let compared = primary.bench.compared.take();
+    let output = compared.as_ref().and_then(|compared| heading_output(compared));
+    if let Some(navigation) = &mut primary.navigation {
+        navigation.heading_output = output.map(Box::new);
+    }
     let mut decision = scenario.decision.decided(&against);
     if let Some(stated) = compared.as_ref().and_then(|compared| stated(compared)) {
         decision.text += &format!(", {stated}");
@@ -208,13 +212,16 @@ pub fn assemble_with(
         }
         let stated = scenario.decision.uncertainty(measure, &against);
         let of_file = compared.as_ref().and_then(|compared| band(compared, measure, scenario));
-        match (stated, of_file) {
-            (Ok(stated), of_file) => {
-                Ok(of_file.map_or(stated, |of_file| stated.max(of_file)) + of_resolution)
-            }
-            (Err(_), Some(of_file)) => Ok(of_file),
-            (unknown, None) => unknown,
-        }
+        let known = match (stated, of_file) {
+            (Ok(stated), of_file) => of_file.map_or(stated, |of_file| stated.max(of_file)),
+            (Err(_), Some(of_file)) => of_file,
+            (unknown, None) => return unknown,
+        };
+        let rounded = match (output_path(measure), &output) {
+            (Some(path), Some(output)) => output.uncertainty(path),
+            _ => compared.as_ref().map_or(0.0, |c| digits(c, measure, scenario)),
+        };
+        Ok(libm::hypot(known, rounded) + of_resolution)
     })?;
     summary.schema = summary.needed_schema()?;
     let report = ReportData {
@@ -267,15 +274,6 @@ fn explain_refusals(summary: &mut Summary, scenario: &Scenario) {
         let twin = baseline.counterfactual.as_ref();
         explain(&mut baseline.calibration, &baseline.faults, twin, scenario.baseline.as_ref());
     }
-}
-
-/// Uncertainty of the times of a solution against its reference.
-fn timing(scenario: &Scenario, run: &MethodRun) -> Option<TimeDoubt> {
-    let SourceSpec::Solution(spec) = &scenario.source else { return None };
-    let [speed_mps, acceleration_mps2, turning_radps] = run.observed.drift.moved.rates();
-    let uncertainty_s = spec.offset_uncertainty_s;
-    let doubt = TimeDoubt { uncertainty_s, speed_mps, acceleration_mps2, turning_radps };
-    (uncertainty_s > 0.0).then_some(doubt)
 }
 
 /// Lists the texts of a scenario's requirements by their ids.

@@ -5,9 +5,11 @@ use super::method::MethodRun;
 use octant_base::number::plain;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
-use octant_scenario::Scenario;
+use octant_scenario::{Scenario, SourceSpec};
+use octant_score::heading_output::{HeadingOutputScore, HeadingPair};
 use octant_trajectory::Comparison;
-use octant_trajectory::comparison::{ErrorName, Quantity};
+use octant_trajectory::comparison::{ComparedHeading, ErrorName, Quantity};
+use octant_verdict::decision::TimeDoubt;
 
 /// Standard deviations in an expanded uncertainty (95 %).
 const EXPANDED: f64 = 1.96;
@@ -40,20 +42,62 @@ fn error_of(bare: &str, scenario: &Scenario) -> Option<(ErrorName, f64)> {
     })
 }
 
+/// Path of a measure below the score of a heading's output; `None`: it is another one.
+pub(super) fn output_path(measure: &str) -> Option<&str> {
+    measure.trim_matches('|').strip_prefix("navigation.heading_output.")
+}
+
+/// Scores the output of the heading; `None` without headings, or with a reference that has none.
+pub(super) fn heading_output(comparison: &Comparison) -> Option<HeadingOutputScore> {
+    let pair = |heading: &ComparedHeading| HeadingPair {
+        t_s: heading.time_ns as f64 * 1e-9,
+        output_rad: heading.solution_rad,
+        reference_rad: heading.reference_rad,
+    };
+    let pairs: Vec<HeadingPair> = comparison.headings().iter().map(pair).collect();
+    let [digit_rad, doubt_s] = comparison.coarsest_heading();
+    HeadingOutputScore::of(&pairs, digit_rad, doubt_s)
+}
+
 /// Expanded uncertainty (95 %) of a measure, in its unit, by the standard deviations that the reference states.
 pub(super) fn band(comparison: &Comparison, measure: &str, scenario: &Scenario) -> Option<f64> {
+    if let Some(path) = output_path(measure) {
+        let heading = comparison.band(ErrorName::Heading);
+        let largest = heading.of("largest")?;
+        // A latency has the uncertainty of its fit, a resolution none.
+        return path.ends_with("_deg").then(|| match path {
+            "resolution_deg" => 0.0,
+            _ => largest.to_degrees(),
+        });
+    }
     let bare = measure.trim_matches('|').strip_prefix("navigation.")?;
     let (error, units) = error_of(bare, scenario)?;
     let score = bare.rsplit('.').next().unwrap_or(bare);
     let score = if score.contains("_max_") { "max" } else { score };
+    let over_time = over_time(score, scenario);
+    comparison.band(error).of(score).map(|band| band * units * over_time)
+}
+
+/// Factor of the uncertainty of a score that is a change with time.
+fn over_time(score: &str, scenario: &Scenario) -> f64 {
     let hours =
         scenario.navigation.as_ref().and_then(|plan| plan.duration_s).unwrap_or(3600.0) / 3600.0;
-    let over_time = match score {
+    match score {
         "slope_per_day" => 48.0 / hours,
         "rate_per_h" => 1.5 / hours,
         _ => 1.0,
-    };
-    comparison.band(error).of(score).map(|band| band * units * over_time)
+    }
+}
+
+/// Expanded uncertainty (95 %) of a measure, in its unit, by the last digits of solution and reference; 0 where they have all.
+pub(super) fn digits(comparison: &Comparison, measure: &str, scenario: &Scenario) -> f64 {
+    let bare = measure.trim_matches('|').strip_prefix("navigation.");
+    let found = bare.and_then(|bare| {
+        let (error, units) = error_of(bare, scenario)?;
+        let score = bare.rsplit('.').next().unwrap_or(bare);
+        Some(comparison.digits(error)?.of(score)? * units * over_time(score, scenario))
+    });
+    found.unwrap_or(0.0)
 }
 
 /// Text of the standard deviations of the position that the reference states.
@@ -63,6 +107,15 @@ pub(super) fn stated(comparison: &Comparison) -> Option<String> {
         "the reference's own standard deviations, of {} m rms, where they leave more open",
         plain(sigma_m, 3)
     ))
+}
+
+/// Uncertainty of the times of a solution against its reference.
+pub(super) fn timing(scenario: &Scenario, run: &MethodRun) -> Option<TimeDoubt> {
+    let SourceSpec::Solution(spec) = &scenario.source else { return None };
+    let [speed_mps, acceleration_mps2, turning_radps] = run.observed.drift.moved.rates();
+    let uncertainty_s = spec.offset_uncertainty_s;
+    let doubt = TimeDoubt { uncertainty_s, speed_mps, acceleration_mps2, turning_radps };
+    (uncertainty_s > 0.0).then_some(doubt)
 }
 
 /// Standard deviation of the reference's quantity: that which is stated, else that of the file.

@@ -2,6 +2,7 @@
 
 use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
+use octant_score::heading_output::HeadingOutputScore;
 use octant_score::summary::{
     AlignmentResult, ErrorScore, HeadingScore, NavigationScore, PointScore, RunUpScore,
     SolutionScore,
@@ -94,6 +95,27 @@ fn run_up_text(run_up: &RunUpScore) -> String {
     parts.join("; ")
 }
 
+/// Latency, follow-up error and error of transmission of a heading on one line.
+fn output_words(output: &HeadingOutputScore) -> String {
+    let deg = |value: f64| number::plain(value, 3);
+    let mut words = Vec::new();
+    if let (Some(latency_s), Some(uncertainty_s)) = (output.latency_s, output.latency_uncertainty_s)
+    {
+        words.push(format!("latency {latency_s:.3} ± {uncertainty_s:.3} s"));
+    }
+    let classes = [("to 10", output.follow_up_10), ("10 to 20", output.follow_up_20)];
+    for (name, class) in classes.into_iter().filter_map(|(name, class)| Some((name, class?))) {
+        let (max, uncertainty) = (deg(class.max_deg), deg(class.uncertainty_deg));
+        words.push(format!("follow-up {name} deg/s max {max} ± {uncertainty} deg"));
+    }
+    words.push(format!(
+        "transmission max {} deg, last digit {} deg",
+        deg(output.transmission_error_deg),
+        deg(output.resolution_deg)
+    ));
+    words.join("; ")
+}
+
 /// Renders the scores of a navigation, one line each for latitude, longitude, radial error, attitude and
 /// velocity.
 #[must_use]
@@ -111,26 +133,36 @@ pub(super) fn navigation_lines(n: &NavigationScore, units: &DisplayUnits) -> Vec
     };
     let radial = units.radial();
     let (digits, finer) = (radial.decimals, radial.decimals + 1);
-    let mut lines = vec![
-        format!("    latitude  {}", position(&n.latitude_error_arcmin, units.latitude())),
-        format!("    longitude {}", position(&n.longitude_error_arcmin, units.longitude())),
-        format!(
+    let mut lines = Vec::new();
+    if let (Some(latitude), Some(longitude)) = (&n.latitude_error_arcmin, &n.longitude_error_arcmin)
+    {
+        lines.push(format!("    latitude  {}", position(latitude, units.latitude())));
+        lines.push(format!("    longitude {}", position(longitude, units.longitude())));
+    }
+    if let Some(score) = &n.radial_error_nmi {
+        lines.push(format!(
             "    radial    max {:.digits$}, rms {:.digits$} {name}, {:.finer$} {name}/h",
-            radial.of(n.radial_error_nmi.max),
-            radial.of(n.radial_error_nmi.rms),
-            radial.of(n.radial_error_nmi.rate_per_h),
+            radial.of(score.max),
+            radial.of(score.rms),
+            radial.of(score.rate_per_h),
             name = radial.name
-        ),
-    ];
+        ));
+    }
+    let unit = units.attitude();
+    if let (Some(heading), None) = (&n.heading_error_arcmin, &n.pitch_error_arcmin) {
+        lines.push(format!("    heading   {} {}", pair(heading, unit), unit.name));
+    }
     if let (Some(heading), Some(pitch), Some(roll)) =
         (&n.heading_error_arcmin, &n.pitch_error_arcmin, &n.roll_error_arcmin)
     {
-        let unit = units.attitude();
         let [heading, pitch, roll] = [heading, pitch, roll].map(|e| pair(e, unit));
         lines.push(format!(
             "    attitude  heading {heading}; pitch {pitch}; roll {roll} {}",
             unit.name
         ));
+    }
+    if let Some(output) = &n.heading_output {
+        lines.push(format!("    output    {}", output_words(output)));
     }
     if let (Some(north), Some(east)) = (&n.velocity_north_error_mps, &n.velocity_east_error_mps) {
         let unit = units.velocity();

@@ -1,5 +1,7 @@
 //! One sentence of NMEA 0183, and what talkers say of one quantity.
 
+use super::framed::Framed;
+use super::heading::{HeadingSaid, Heard, unscored};
 use crate::point::SECOND_NS;
 use octant_base::decimal::decimal_ns;
 use octant_earth::units::NAUTICAL_MILE_M;
@@ -11,7 +13,7 @@ const KNOT_MPS: f64 = NAUTICAL_MILE_M / 3600.0;
 pub(super) struct Said<const N: usize> {
     pub(super) value: [f64; N],
     /// Change of the values by one in their last digits.
-    resolution: [f64; N],
+    pub(super) resolution: [f64; N],
     talker: Talker,
     kind: Talker,
 }
@@ -100,13 +102,13 @@ impl std::fmt::Display for Talker {
 }
 
 // Reasons why a line belongs to no point.
-const NO_SENTENCE: &str = "lines without a sentence";
-const DAMAGED: &str = "sentences with a wrong checksum";
+pub(super) const NO_SENTENCE: &str = "lines without a sentence";
+pub(super) const DAMAGED: &str = "sentences with a wrong checksum";
 pub(super) const UNSUMMED: &str = "sentences without a checksum";
-const OTHER_KINDS: &str = "sentences of other kinds";
-const UNREADABLE: &str = "sentences that can't be read";
+pub(super) const OTHER_KINDS: &str = "sentences of other kinds";
+pub(super) const UNREADABLE: &str = "sentences that can't be read";
 const NO_FIX: &str = "sentences without a valid fix";
-const NO_MEASUREMENT: &str = "sentences of a simulator or of manual input";
+pub(super) const NO_MEASUREMENT: &str = "sentences of a simulator or of manual input";
 
 /// What a sentence says.
 #[derive(Clone, Copy, Debug, Default)]
@@ -120,12 +122,20 @@ pub(super) struct Sentence {
     pub(super) height_m: Option<Said<1>>,
     pub(super) velocity_mps: Option<Said<2>>,
     pub(super) attitude_rad: Option<Said<3>>,
+    /// Heading of a sentence without a time.
+    pub(super) heading: Option<HeadingSaid>,
+    /// Talker of a sentence that has a heading, also of one that isn't valid.
+    pub(super) heading_talker: Option<Talker>,
+    /// Quality of the headings of PSXN,23 behind it.
+    pub(super) heading_quality: Option<u8>,
     /// Standard deviations of latitude and longitude, m, and of the attitude, rad.
     pub(super) sigma_m: Option<[f64; 2]>,
     pub(super) attitude_sigma_rad: Option<[f64; 3]>,
     /// Quality of a position, in the words of the standard.
     pub(super) quality: Option<&'static str>,
-    /// True for a position of dead reckoning.
+    /// True for a sentence of a position, also of one that isn't valid.
+    pub(super) tells_position: bool,
+    /// True for a position or heading of dead reckoning.
     pub(super) is_estimated: bool,
     /// Reason why nothing of it but its time counts.
     pub(super) left_out: Option<&'static str>,
@@ -183,19 +193,13 @@ impl Sentence {
     /// The reason why it has no sentence that counts here.
     pub(super) fn of(line: &str) -> Result<Self, &'static str> {
         // Loggers write stamps of their own before a sentence.
-        let body = &line[line.rfind('$').ok_or(NO_SENTENCE)? + 1..];
-        let Some((body, checksum)) = body.trim_end().rsplit_once('*') else {
+        let framed = Framed::of(line)?;
+        let found = Self::of_body(framed.body);
+        match found {
             // Only what would count is worth a checksum.
-            return Err(match Self::of_body(body.trim_end()) {
-                Err(reason) if reason != UNREADABLE => reason,
-                _ => UNSUMMED,
-            });
-        };
-        let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
-        if u8::from_str_radix(checksum, 16) != Ok(sum) {
-            return Err(DAMAGED);
+            Ok(_) | Err(UNREADABLE) if !framed.summed => Err(UNSUMMED),
+            found => found,
         }
-        Self::of_body(body)
     }
 
     fn of_body(body: &str) -> Result<Self, &'static str> {
@@ -211,12 +215,36 @@ impl Sentence {
         };
         let kinds = ["GGA", "GNS", "GLL", "RMC", "ZDA", "VTG", "GST", "PASHR"];
         if !kinds.contains(&kind) {
-            return Err(OTHER_KINDS);
+            return match Heard::of(name, &fields) {
+                Some(Ok(heard)) => Ok(Self::of_heading(name, talker, heard)),
+                Some(Err(reason)) => Err(reason),
+                None => Err(unscored(name)),
+            };
         }
         let sentence = Self::of_fields(Talker::of(talker), kind, &fields).ok_or(UNREADABLE)?;
         // A sentence with a time that can't be read must not go to the point before it.
         let needs_time = kind != "VTG";
+        let tells_position = matches!(kind, "GGA" | "GNS" | "GLL" | "RMC");
+        let sentence = Self { tells_position, ..sentence };
         if needs_time && sentence.of_day_ns.is_none() { Err(UNREADABLE) } else { Ok(sentence) }
+    }
+
+    fn of_heading(name: &str, letters: &str, heard: Heard) -> Self {
+        let is_own = name.starts_with('P');
+        // A maker's sentence has no talker.
+        let talker = if is_own { Talker::default() } else { Talker::of(letters) };
+        let said = Self {
+            talker,
+            heading_talker: Some(if is_own { Talker::of(name) } else { talker }),
+            ..Self::default()
+        };
+        match heard {
+            Heard::Heading(heading) => {
+                Self { heading: Some(heading), is_estimated: heading.is_estimated, ..said }
+            }
+            Heard::Quality(quality) => Self { heading_quality: Some(quality), ..said },
+            Heard::LeftOut(reason) => Self { left_out: Some(reason), ..said },
+        }
     }
 
     fn of_fields(talker: Talker, kind: &str, fields: &[&str]) -> Option<Self> {
@@ -317,7 +345,7 @@ impl Sentence {
 }
 
 /// Change of a decimal number by one in its last digit.
-fn last_digit(text: &str) -> f64 {
+pub(super) fn last_digit(text: &str) -> f64 {
     let digits = text.split_once('.').map_or(0, |(_, digits)| digits.len());
     libm::exp10(-(digits as f64))
 }

@@ -2,6 +2,7 @@
 //! of accounts has a row for each. `OCTANT_WRITE_FIXTURES=1` writes the rows.
 
 mod documents;
+mod headings;
 mod live;
 mod logs;
 mod mcap;

@@ -31,6 +31,7 @@ pub(crate) fn summary() -> Summary {
         planned: None,
         done: None,
         faults: vec![],
+        heading: None,
         method: "eight".to_owned(),
         calibration: Some(CalibrationScore {
             reference: None,
@@ -52,9 +53,15 @@ pub(crate) fn summary() -> Summary {
         navigation: Some(NavigationScore {
             duration_h: 1.0,
             height: HeightChannel::Held,
-            latitude_error_arcmin: score,
-            longitude_error_arcmin: score,
-            radial_error_nmi: RadialScore { max: 1.0, rms: 0.5, r#final: 0.9, rate_per_h: 0.8 },
+            latitude_error_arcmin: Some(score),
+            longitude_error_arcmin: Some(score),
+            radial_error_nmi: Some(RadialScore {
+                max: 1.0,
+                rms: 0.5,
+                r#final: 0.9,
+                rate_per_h: 0.8,
+            }),
+            heading_output: None,
             heading_error_arcmin: None,
             pitch_error_arcmin: None,
             roll_error_arcmin: None,

@@ -2,9 +2,13 @@
 
 use super::columns::{column, time_unit};
 use super::definition::Kind;
-use super::table::{At, Of, choice, integer, keys, text, time};
+use super::table::{At, Of, choice, integer, keys, text, time, within};
+use crate::quantity::UnitDimension;
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
+use crate::trajectory::{HeadingTime, NmeaPoints};
 use octant_instruments::navigation::NavigationProtocol;
+
+use std::f64::consts::{PI, TAU};
 
 /// Form of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +22,8 @@ pub(crate) enum TrajectoryForm {
 
 const BY_NAME: &str =
     "by the name's ending: nmea and nma; pos; sbet and out; others are columns of text";
+const POINTS: &str =
+    "headings, where the reference is true_heading or the file has no position; else positions";
 const THERE: &str = "the name of Octant's exports, where the header has it";
 
 /// Largest offset, s: from a clock that begins with zero to any time of GPS.
@@ -42,6 +48,22 @@ macro_rules! trajectory {
                     }, derived(BY_NAME), "What the file is.";
                 talker: At<Option<String>> = text(), absent("all talkers, which have to agree"),
                     "NMEA: letters of the talker whose sentences count, such as IN; dates count from all. PASHR has no talker, and always counts.";
+                points: At<Option<NmeaPoints>> = choice! {
+                        "positions" => NmeaPoints::Positions, "positions, each with the heading behind it";
+                        "headings" => NmeaPoints::Headings, "headings, each alone: position and velocity are not scored";
+                    }, derived(POINTS),
+                    "NMEA: sentences that make a point each.";
+                heading_time: At<Option<HeadingTime>> = choice! {
+                        "tag" => HeadingTime::Tag, "parameter c of the TAG block before the sentence (IEC 61162-450)";
+                        "stamp" => HeadingTime::Stamp, "the date and time that a logger wrote before the sentence";
+                        "cycle" => HeadingTime::Cycle, "sentences with a time of day, such as ZDA: the headings behind one are spread evenly to the next";
+                    }, derived("the first of tag, stamp and cycle that the file has"),
+                    "NMEA: time of headings without one, such as HDT and THS.";
+                heading_rate: At<Option<f64>> = within(&[UnitDimension::FREQUENCY], 0.1, 1000.0, "from 0.1 Hz to 1 kHz"),
+                    absent("they have times"),
+                    "NMEA: even rate of headings in a file without any time. Sentences that are missing can't be seen.";
+                heading_start: At<Option<String>> = text(), absent("0 s on a scale of its own"),
+                    "NMEA: time of the first heading of heading_rate, such as 2027-03-31T08:00:00Z.";
                 delimiter: Delimiter = choice! {
                         "whitespace" => Delimiter::Blanks, "any run of blanks and tabs";
                         "comma" => Delimiter::Character(b','), ",";
@@ -81,7 +103,12 @@ trajectory! {
 trajectory! {
     /// `[source.trajectory]`.
     ReferenceTrajectoryKeys {
-        file: String = text(), required, "Its file. Relative to the scenario.";
+        file: At<Option<String>> = text(), absent("true_heading is the reference"), "Its file. Relative to the scenario.";
+        true_heading: Option<f64> = within(&[UnitDimension::ANGLE], -TAU, TAU, "within ±360 deg"),
+            absent("the reference is a file"),
+            "Heading that was surveyed, as by a theodolite, of an instrument that stands still: it is the reference, instead of a file.";
+        true_heading_uncertainty: At<Option<f64>> = within(&[UnitDimension::ANGLE], 0.0, PI, "from 0 to 180 deg"),
+            absent("that of [decision]"), "How far true_heading may be off, 95 %.";
         offset: Option<f64> = time(-OFFSET_MAX_S, OFFSET_MAX_S, "from -4e9 to 4e9 s"),
             absent("0 s, if both files tell the time on a scale that is known; else it has to be given"),
             "What is added to the solution's times to get those of this file.";

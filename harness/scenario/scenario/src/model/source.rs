@@ -4,7 +4,7 @@ use super::file_name::FileName;
 use super::fmu::Fmu;
 use super::instrument::{Instrument, InstrumentLog};
 use crate::recorded::{McapMapping, TextMapping};
-use crate::trajectory::SolutionSpec;
+use crate::trajectory::{ReferenceSpec, SolutionSpec};
 
 /// Source of the samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +109,10 @@ impl SourceSpec {
             Self::Text(mapping) => {
                 mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
             }
-            Self::Solution(spec) => vec![spec.solution.file.clone(), spec.reference.file.clone()],
+            Self::Solution(spec) => std::iter::once(&spec.solution)
+                .chain(spec.reference.file())
+                .map(|trajectory| trajectory.file.clone())
+                .collect(),
             Self::Plant | Self::Fmu(_) | Self::Live(_) => Vec::new(),
         }
     }
@@ -150,8 +153,17 @@ impl SourceSpec {
                 Some(("source", format!("recorded bytes of {}, no truth", speaks.told())))
             }
             Self::Solution(spec) => {
-                let files = [&spec.solution, &spec.reference].map(|file| file.file.short());
-                Some(("source", format!("solution {} against {}", files[0], files[1])))
+                let against = match &spec.reference {
+                    ReferenceSpec::File(reference) => reference.file.short().to_owned(),
+                    ReferenceSpec::Heading { heading_rad, .. } => format!(
+                        "a true heading of {} deg",
+                        octant_base::number::plain(heading_rad.to_degrees(), 9)
+                    ),
+                };
+                Some((
+                    "source",
+                    format!("solution {} against {against}", spec.solution.file.short()),
+                ))
             }
             Self::Fmu(fmu) => {
                 let name = if fmu.is_motion() { "motion of the case" } else { "source" };

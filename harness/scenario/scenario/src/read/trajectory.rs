@@ -7,7 +7,8 @@ use crate::keys::{
 use crate::model::{EndpointSpec, FileName, Scenario, SourceSpec};
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
 use crate::trajectory::{
-    NmeaChoice, SolutionSpec, TrajectoryColumns, TrajectoryFormat, TrajectorySpec,
+    HeadingTime, NmeaChoice, NmeaPoints, ReferenceSpec, SolutionSpec, TrajectoryColumns,
+    TrajectoryFormat, TrajectorySpec,
 };
 
 /// Reads the solution of `source.uri = "solution:FILE"`.
@@ -17,20 +18,49 @@ pub(super) fn solution(keys: &SourceKeys, file: &str) -> Result<SolutionSpec, Pr
             "missing, expected the trajectory that the solution of source.uri is scored against",
         ));
     };
-    let solution = match &keys.solution {
+    let spec = |file: &str, format| TrajectorySpec { file: FileName(file.to_owned()), format };
+    let reference = reference(trajectory, spec)?;
+    let mut solution = match &keys.solution {
         Some(solution) => solution.format(file)?,
         None => format_of(None, file, NmeaChoice::default(), || Ok(TrajectoryColumns::default()))?,
     };
-    let reference = trajectory.format(&trajectory.file)?;
-    let spec = |file: &str, format| TrajectorySpec { file: FileName(file.to_owned()), format };
+    // Beside a heading alone nothing else is scored.
+    if let (ReferenceSpec::Heading { .. }, TrajectoryFormat::Nmea(choice)) =
+        (&reference, &mut solution)
+    {
+        choice.points.get_or_insert(NmeaPoints::Headings);
+    }
     Ok(SolutionSpec {
         solution: spec(file, solution),
         skip_ns: keys.solution.as_ref().map_or(0, |keys| (keys.skip * 1e9).round() as i64),
-        reference: spec(&trajectory.file, reference),
+        reference,
         offset_ns: trajectory.offset.map(|offset_s| (offset_s * 1e9).round() as i64),
         offset_uncertainty_s: trajectory.offset_uncertainty,
         gap_ns: (trajectory.gap * 1e9).round() as i64,
     })
+}
+
+/// Reads the reference: a file or a heading.
+fn reference(
+    keys: &ReferenceTrajectoryKeys,
+    spec: impl Fn(&str, TrajectoryFormat) -> TrajectorySpec,
+) -> Result<ReferenceSpec, Problem> {
+    let uncertainty = &keys.true_heading_uncertainty;
+    match (&*keys.file, keys.true_heading) {
+        (Some(_), Some(_)) => Err(keys.file.problem(
+            "found beside true_heading, expected one reference: a file, or a heading that was surveyed",
+        )),
+        (None, None) => Err(keys.file.problem(
+            "missing, expected the file of the reference, or true_heading of an instrument that stands still",
+        )),
+        (Some(_), None) if uncertainty.is_some() => {
+            Err(uncertainty.problem("found without true_heading, whose uncertainty it is"))
+        }
+        (Some(file), None) => Ok(ReferenceSpec::File(spec(file, keys.format(file)?))),
+        (None, Some(heading_rad)) => {
+            Ok(ReferenceSpec::Heading { heading_rad, uncertainty_rad: **uncertainty })
+        }
+    }
 }
 
 /// Refuses what has no meaning for a solution that is made already.
@@ -119,13 +149,50 @@ fn talker(key: &At<Option<String>>) -> Result<Option<String>, Problem> {
     }
 }
 
+/// Keys that say how headings get their times.
+fn heading_time(
+    by: &At<Option<HeadingTime>>,
+    rate: &At<Option<f64>>,
+    start: &At<Option<String>>,
+) -> Result<Option<HeadingTime>, Problem> {
+    let Some(rate_hz) = **rate else {
+        return match &**start {
+            None => Ok(**by),
+            Some(_) => Err(start.problem("found without heading_rate, whose first time it is")),
+        };
+    };
+    if by.is_some() {
+        return Err(by.problem("found beside heading_rate, expected one of both"));
+    }
+    let start_ns = match &**start {
+        None => None,
+        Some(text) => Some(
+            octant_base::utc::written(text, None)
+                .ok_or_else(|| {
+                    start.problem(format!(
+                        "found {text:?}, expected a time such as 2027-03-31T08:00:00Z"
+                    ))
+                })?
+                .since_1970_ns,
+        ),
+    };
+    Ok(Some(HeadingTime::Rate(rate_hz, start_ns)))
+}
+
 macro_rules! columns_of {
     ($($keys:ty: $truth_first:literal),+) => { $(
         impl $keys {
             fn format(&self, file: &str) -> Result<TrajectoryFormat, Problem> {
-                let choice =
-                    NmeaChoice { talker: talker(&self.talker)?, fixes_alone: $truth_first };
-                let talker = &self.talker;
+                let choice = NmeaChoice {
+                    talker: talker(&self.talker)?,
+                    fixes_alone: $truth_first,
+                    points: *self.points,
+                    heading_time: heading_time(
+                        &self.heading_time,
+                        &self.heading_rate,
+                        &self.heading_start,
+                    )?,
+                };
                 let format = format_of(self.format, file, choice, || {
                     let column = |key: &At<Option<RecordedColumn>>| key.value.clone();
                     Ok(TrajectoryColumns {
@@ -141,10 +208,23 @@ macro_rules! columns_of {
                         velocity_mps: self.velocity_unit.unit_si()?,
                     })
                 })?;
-                if talker.is_some() && !matches!(format, TrajectoryFormat::Nmea(_)) {
-                    return Err(talker.problem(format!(
-                        "found with {file}, which is no NMEA 0183, expected format = \"nmea\" or no talker"
-                    )));
+                if matches!(format, TrajectoryFormat::Nmea(_)) {
+                    return Ok(format);
+                }
+                let not_nmea = |name: &str| {
+                    format!("found with {file}, which is no NMEA 0183, expected format = \"nmea\" or no {name}")
+                };
+                if self.talker.is_some() {
+                    return Err(self.talker.problem(not_nmea("talker")));
+                }
+                if self.points.is_some() {
+                    return Err(self.points.problem(not_nmea("points")));
+                }
+                if self.heading_time.is_some() {
+                    return Err(self.heading_time.problem(not_nmea("heading_time")));
+                }
+                if self.heading_rate.is_some() {
+                    return Err(self.heading_rate.problem(not_nmea("heading_rate")));
                 }
                 Ok(format)
             }

@@ -142,6 +142,7 @@ pub(super) const NAVIGATION: Place = table(
         ("roll_error_arcmin", table("roll error of the case", &[], ERROR_ARCMIN)),
         ("velocity_north_error_mps", table("velocity error north", &[], ERROR_MPS)),
         ("velocity_east_error_mps", table("velocity error east", &[], ERROR_MPS)),
+        ("heading_output", table("output of the heading", &[], HEADING_OUTPUT)),
         (
             "slope_window",
             table(
@@ -166,6 +167,24 @@ pub(super) const NAVIGATION: Place = table(
         ),
     ],
 );
+
+/// Of a solution that was made elsewhere.
+const HEADING_OUTPUT: Keys = &[
+    ("resolution_deg", magnitude(DEG, "change by one in the last digit")),
+    ("constant_error_deg", signed(DEG, "constant error")),
+    ("transmission_error_deg", magnitude(DEG, "error without constant and latency, largest")),
+    ("transmission_rms_deg", magnitude(DEG, "error without constant and latency, rms")),
+    ("latency_s", signed(SECOND, "latency against the reference")),
+    ("latency_uncertainty_s", magnitude(SECOND, "expanded uncertainty of the latency (95 %)")),
+    ("follow_up_10", table("follow-up error up to 10 deg/s", &[], FOLLOW_UP)),
+    ("follow_up_20", table("follow-up error from 10 to 20 deg/s", &[], FOLLOW_UP)),
+];
+const FOLLOW_UP: Keys = &[
+    ("max_deg", magnitude(DEG, "largest magnitude")),
+    ("rms_deg", magnitude(DEG, "root mean square over the points")),
+    ("rate_max_degps", magnitude(Unit::Named("deg/s"), "largest rate of turn")),
+    ("points", count("number of points")),
+];
 
 const ERROR_ARCMIN: Keys = &[
     ("max", magnitude(ARCMIN, "largest magnitude")),
