@@ -50,8 +50,8 @@ fn headings_alone_are_scored_against_a_surveyed_one() {
         ["--solution", "gyro.nmea", "--true-heading", "359.9 deg", "--scenario", "s.toml"];
     let surveyed = |uncertainty: &str, limit: &str| {
         let set = format!("source.trajectory.true_heading_uncertainty={uncertainty}");
-        let limit = format!("requirements.0.limit={limit}");
-        let more = [&arguments[..], &["--set", &set, "--set", &limit]].concat();
+        std::fs::write(here.join("s.toml"), REQUIRED.replace("24 arcmin", limit)).unwrap();
+        let more = [&arguments[..], &["--set", &set]].concat();
         score(here, &more)
     };
     let (status, said) = surveyed("0.02 deg", "24 arcmin");
@@ -124,7 +124,7 @@ fn latency_and_follow_up_are_measures_of_a_requirement() {
 [[requirements]]
 id = \"OUT-1\"
 text = \"It is not late.\"
-measure = \"navigation.heading_output.latency_s\"
+measure = \"|navigation.heading_output.latency_s|\"
 limit = \"{latency}\"
 [[requirements]]
 id = \"OUT-2\"
