@@ -17,32 +17,33 @@
 //! Each line is counted: it belongs to a point, or is left out for a reason. A sentence of a time before the present point, as a
 //! logger writes it that was late, is left out.
 
+mod choice;
 mod clock;
+mod date;
 mod framed;
 mod heading;
 mod headings;
 mod lines;
 mod sentence;
 mod velocity;
+mod words;
 
-use self::heading::{ESTIMATED_HEADING, HeadingSaid, PsxnQuality};
+use self::choice::chosen;
+use self::date::{DAY_NS, LINES_TO_LOOK_AT, first_day};
+use self::heading::{HeadingSaid, PsxnQuality};
 use self::headings::HeadingReader;
 use self::lines::NmeaLines;
-use self::sentence::{Said, Sentence, Talker, UNSUMMED};
+use self::sentence::{Said, Sentence};
 use self::velocity::velocity_leads;
 use super::point::{
-    GeodeticPosition, PointAttitude, PointSigma, Points, SECOND_NS, TimeScale, TrajectoryPoint,
+    GeodeticPosition, PointAttitude, PointSigma, Points, TimeScale, TrajectoryPoint,
 };
 use super::tally::{OUT_OF_ORDER, Tally};
 use octant_scenario::trajectory::{NmeaChoice, NmeaPoints};
 use std::fs::File;
 
-const DAY_NS: i64 = 86_400 * SECOND_NS;
 /// Radius for distances in messages, m.
 const EARTH_RADIUS_M: f64 = 6.371e6;
-
-/// Lines within which a file has to show what it is.
-const LINES_TO_LOOK_AT: u64 = 10_000;
 
 pub(crate) struct NmeaReader {
     lines: NmeaLines,
@@ -81,8 +82,6 @@ struct Begun {
     quality: Option<&'static str>,
 }
 
-const OTHER_TALKERS: &str = "sentences of other talkers";
-const ESTIMATED: &str = "sentences with an estimated position, which is no fix";
 const FURTHER: &str = "velocities without a time, besides the first of their position";
 const FURTHER_HEADING: &str = "headings without a time, besides the first behind their position";
 const NO_POSITION: &str = "sentences of times without a position";
@@ -266,29 +265,6 @@ impl NmeaReader {
     }
 }
 
-/// A sentence as far as it was chosen: of another talker the date alone.
-fn chosen(sentence: Sentence, choice: &NmeaChoice) -> Sentence {
-    if sentence.left_out.is_some() || sentence.is_date_alone {
-        return sentence;
-    }
-    let nobody = Talker::default();
-    let other = choice
-        .talker
-        .as_deref()
-        .map(Talker::of)
-        .is_some_and(|talker| sentence.talker != talker && sentence.talker != nobody);
-    if other {
-        let date = sentence.day_ns.is_some();
-        let sentence = sentence.without(OTHER_TALKERS);
-        return Sentence { is_date_alone: date, ..sentence };
-    }
-    match sentence.heading {
-        _ if !(choice.fixes_alone && sentence.is_estimated) => sentence,
-        Some(_) => sentence.without(ESTIMATED_HEADING),
-        None => sentence.without(ESTIMATED),
-    }
-}
-
 impl Begun {
     /// Takes what a sentence says.
     ///
@@ -424,43 +400,4 @@ impl Points for NmeaReader {
         let leads = "each VTG goes to the position after it: its velocities fit the change of position there, not before it";
         self.velocity_leads.then_some(leads).into_iter().collect()
     }
-}
-
-/// Words for sentences without checksums.
-fn unsummed(unsummed: u64) -> String {
-    format!(
-        "found {unsummed} sentences without a checksum, expected each to end in * and two hexadecimal digits, the exclusive or of \
-         the characters between $ and *: have the receiver or the logger write them; without, a damaged sentence can't be told"
-    )
-}
-
-/// Finds the day of the first point.
-fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
-    let mut first_ns: Option<i64> = None;
-    let (mut sentences, mut unsummed) = (0_u64, 0_u64);
-    while lines.advance()? && (sentences > 0 || lines.line <= LINES_TO_LOOK_AT) {
-        let sentence = match Sentence::of(&lines.text) {
-            Ok(sentence) => sentence,
-            Err(reason) => {
-                unsummed += u64::from(reason == UNSUMMED);
-                continue;
-            }
-        };
-        sentences += 1;
-        first_ns = first_ns.or(sentence.of_day_ns);
-        if let (Some(day_ns), Some(of_day_ns)) = (sentence.day_ns, sentence.of_day_ns) {
-            let first_ns = first_ns.unwrap_or(of_day_ns);
-            // Sentences of the evening may come before the first date of the next morning.
-            let evening = of_day_ns + DAY_NS / 2 < first_ns;
-            return Ok(if evening { day_ns - DAY_NS } else { day_ns });
-        }
-    }
-    Err(if sentences == 0 && unsummed > 0 {
-        self::unsummed(unsummed)
-    } else if sentences == 0 {
-        "found no sentence of NMEA 0183 with a position, a speed or an attitude, and a right checksum"
-            .to_owned()
-    } else {
-        format!("found {sentences} sentences and no date, expected an RMC or a ZDA")
-    })
 }

@@ -13,7 +13,7 @@ use super::track::{Reference, ReferencePoint, ReferenceTrack, q_nc};
 use octant_account::{Account, AccountEntry};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::FileNameError;
-use octant_scenario::trajectory::{ReferenceSpec, SolutionSpec, TrajectorySpec};
+use octant_scenario::trajectory::{SolutionReference, SolutionSpec, TrajectorySpec};
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
@@ -178,10 +178,10 @@ impl SolutionPairs {
         let of_solution = path(&spec.solution)?;
         let survey = TrajectorySurvey::of(&of_solution, &spec.solution.format)?;
         let (reference, offset_ns, apart) = match &spec.reference {
-            ReferenceSpec::Heading { heading_rad, uncertainty_rad } => {
+            SolutionReference::Heading { heading_rad, uncertainty_rad } => {
                 (Reference::heading(*heading_rad, *uncertainty_rad), 0, Apart::default())
             }
-            ReferenceSpec::File(file) => {
+            SolutionReference::File(file) => {
                 let named = (of_solution.display().to_string(), &survey);
                 Self::open_reference(named, spec, (&path(file)?, file), site_rad)?
             }

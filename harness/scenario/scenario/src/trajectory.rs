@@ -91,7 +91,7 @@ pub struct TrajectoryColumns {
 
 /// Reference of a solution.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ReferenceSpec {
+pub enum SolutionReference {
     /// A file.
     File(TrajectorySpec),
     /// A heading that was surveyed, of an instrument that stands still.
@@ -103,7 +103,7 @@ pub enum ReferenceSpec {
     },
 }
 
-impl ReferenceSpec {
+impl SolutionReference {
     /// The file, where there is one.
     #[must_use]
     pub fn file(&self) -> Option<&TrajectorySpec> {
@@ -122,7 +122,7 @@ pub struct SolutionSpec {
     /// Time at its beginning that isn't scored, ns.
     pub skip_ns: i64,
     /// The reference.
-    pub reference: ReferenceSpec,
+    pub reference: SolutionReference,
     /// Time added to the solution's times to get those of the reference, ns; `None`: nothing, if both
     /// tell the time on a scale that is known.
     pub offset_ns: Option<i64>,

@@ -1,6 +1,6 @@
 //! Times of headings: groups of TAG blocks, days of times of day, cycles of a log.
 
-use super::DAY_NS;
+use super::date::DAY_NS;
 use super::framed::Tag;
 use super::heading::HeadingSaid;
 use crate::point::{PointSigma, TrajectoryPoint};

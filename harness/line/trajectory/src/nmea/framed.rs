@@ -7,7 +7,7 @@
 //! Public text: gpsd, "AIVDM/AIVDO protocol decoding", NMEA tag blocks; the header: rietman.wordpress.com, "NemaStudio now supports
 //! the NMEA 0183 TAG block", 2016.
 
-use super::sentence::{DAMAGED, NO_SENTENCE};
+use super::words::{DAMAGED, NO_SENTENCE};
 use octant_base::decimal::decimal_ns;
 use octant_base::utc;
 

@@ -15,7 +15,7 @@
 use crate::point::PointAttitude;
 use std::f64::consts::{PI, TAU};
 
-use super::sentence::{NO_MEASUREMENT, OTHER_KINDS, Talker, UNREADABLE, last_digit};
+use super::words::{NO_MEASUREMENT, OTHER_KINDS, Talker, UNREADABLE, last_digit};
 
 /// Reason of a heading that its instrument calls invalid.
 pub(super) const INVALID: &str = "headings that the instrument calls invalid";

@@ -7,12 +7,14 @@
 //!
 //! Headings that are invalid make no point, and keep their places.
 
+use super::choice::OTHER_TALKERS;
 use super::clock::{Cycle, Days, Group, Ready, point};
+use super::date::{LINES_TO_LOOK_AT, first_day, words_of_unsummed};
 use super::framed::{DAMAGED_TAG, Framed};
 use super::heading::{ESTIMATED_HEADING, HeadingSaid, INVALID, PsxnQuality};
 use super::lines::NmeaLines;
-use super::sentence::{Sentence, Talker, UNREADABLE, UNSUMMED};
-use super::{LINES_TO_LOOK_AT, OTHER_TALKERS, first_day};
+use super::sentence::Sentence;
+use super::words::{Talker, UNREADABLE, UNSUMMED};
 use crate::point::{Points, SECOND_NS, TimeScale, TrajectoryPoint};
 use crate::tally::Tally;
 use octant_scenario::trajectory::{HeadingTime, NmeaChoice};
@@ -105,7 +107,7 @@ fn instrument(all: &[Found], chosen: Option<Talker>, unsummed: u64) -> Result<Fo
     };
     match named[..] {
         [one] => Ok(one),
-        [] if unsummed > 0 => Err(super::unsummed(unsummed)),
+        [] if unsummed > 0 => Err(words_of_unsummed(unsummed)),
         [] => {
             let of = chosen.map_or_else(String::new, |talker| format!(" of talker {talker}"));
             Err(format!(

@@ -1,8 +1,9 @@
 //! To which positions the velocities without a time belong.
 
+use super::choice::chosen;
+use super::date::LINES_TO_LOOK_AT;
 use super::lines::NmeaLines;
 use super::sentence::Sentence;
-use super::{LINES_TO_LOOK_AT, chosen};
 use crate::point::SECOND_NS;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::trajectory::NmeaChoice;

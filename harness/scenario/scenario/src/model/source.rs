@@ -4,7 +4,7 @@ use super::file_name::FileName;
 use super::fmu::Fmu;
 use super::instrument::{Instrument, InstrumentLog};
 use crate::recorded::{McapMapping, TextMapping};
-use crate::trajectory::{ReferenceSpec, SolutionSpec};
+use crate::trajectory::{SolutionReference, SolutionSpec};
 
 /// Source of the samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,8 +154,8 @@ impl SourceSpec {
             }
             Self::Solution(spec) => {
                 let against = match &spec.reference {
-                    ReferenceSpec::File(reference) => reference.file.short().to_owned(),
-                    ReferenceSpec::Heading { heading_rad, .. } => format!(
+                    SolutionReference::File(reference) => reference.file.short().to_owned(),
+                    SolutionReference::Heading { heading_rad, .. } => format!(
                         "a true heading of {} deg",
                         octant_base::number::plain(heading_rad.to_degrees(), 9)
                     ),

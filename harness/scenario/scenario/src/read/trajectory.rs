@@ -7,7 +7,7 @@ use crate::keys::{
 use crate::model::{EndpointSpec, FileName, Scenario, SourceSpec};
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
 use crate::trajectory::{
-    HeadingTime, NmeaChoice, NmeaPoints, ReferenceSpec, SolutionSpec, TrajectoryColumns,
+    HeadingTime, NmeaChoice, NmeaPoints, SolutionReference, SolutionSpec, TrajectoryColumns,
     TrajectoryFormat, TrajectorySpec,
 };
 
@@ -25,7 +25,7 @@ pub(super) fn solution(keys: &SourceKeys, file: &str) -> Result<SolutionSpec, Pr
         None => format_of(None, file, NmeaChoice::default(), || Ok(TrajectoryColumns::default()))?,
     };
     // Beside a heading alone nothing else is scored.
-    if let (ReferenceSpec::Heading { .. }, TrajectoryFormat::Nmea(choice)) =
+    if let (SolutionReference::Heading { .. }, TrajectoryFormat::Nmea(choice)) =
         (&reference, &mut solution)
     {
         choice.points.get_or_insert(NmeaPoints::Headings);
@@ -44,7 +44,7 @@ pub(super) fn solution(keys: &SourceKeys, file: &str) -> Result<SolutionSpec, Pr
 fn reference(
     keys: &ReferenceTrajectoryKeys,
     spec: impl Fn(&str, TrajectoryFormat) -> TrajectorySpec,
-) -> Result<ReferenceSpec, Problem> {
+) -> Result<SolutionReference, Problem> {
     let uncertainty = &keys.true_heading_uncertainty;
     match (&*keys.file, keys.true_heading) {
         (Some(_), Some(_)) => Err(keys.file.problem(
@@ -56,9 +56,9 @@ fn reference(
         (Some(_), None) if uncertainty.is_some() => {
             Err(uncertainty.problem("found without true_heading, whose uncertainty it is"))
         }
-        (Some(file), None) => Ok(ReferenceSpec::File(spec(file, keys.format(file)?))),
+        (Some(file), None) => Ok(SolutionReference::File(spec(file, keys.format(file)?))),
         (None, Some(heading_rad)) => {
-            Ok(ReferenceSpec::Heading { heading_rad, uncertainty_rad: **uncertainty })
+            Ok(SolutionReference::Heading { heading_rad, uncertainty_rad: **uncertainty })
         }
     }
 }
