@@ -2,9 +2,7 @@
 
 use super::framed::Framed;
 use super::heading::{HeadingSaid, Heard, unscored};
-use super::words::{
-    DAMAGED, NO_FIX, NO_MEASUREMENT, OTHER_KINDS, Talker, UNREADABLE, UNSUMMED, last_digit,
-};
+use super::words::{NO_FIX, NO_MEASUREMENT, OTHER_KINDS, Talker, UNREADABLE, UNSUMMED, last_digit};
 use crate::point::SECOND_NS;
 use octant_base::decimal::decimal_ns;
 use octant_earth::units::NAUTICAL_MILE_M;
@@ -355,6 +353,7 @@ fn date(year: i64, month: i64, day: i64) -> Option<i64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::words::DAMAGED;
     use super::*;
 
     #[test]
