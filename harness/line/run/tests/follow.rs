@@ -55,6 +55,9 @@ fn a_solution_that_goes_in_a_circle_is_found() {
     let circle = watch(|k| [((k / 10) % 5) as f64; 3]);
     assert_eq!(circle.len(), 1);
     assert!(circle[0].contains("are repetitions"), "{circle:?}");
+    // The same second again and again is as it was a second ago, and isn't held.
+    let second = watch(|k| [(k % 10) as f64; 3]);
+    assert!(second[0].contains("are repetitions"), "{second:?}");
 }
 
 #[test]

@@ -474,6 +474,39 @@ fn a_campaign_that_contradicts_itself_is_refused_with_its_place() {
 }
 
 #[test]
+fn a_requirement_that_no_case_can_meet_is_refused() {
+    for (measure, limit, words) in [
+        ("counterfactual.worst_shift_sigma", "3", "cases of a campaign run no twin without faults"),
+        (
+            "navigation.marks.24h.radial_nmi",
+            "\"1 nmi\"",
+            "the scenario navigates for less than 24 h",
+        ),
+        (
+            "baseline.navigation.radial_error_nmi.max",
+            "\"1 nmi\"",
+            "the scenario has no second method",
+        ),
+    ] {
+        let bench = Bench::new(CAMPAIGN);
+        let other = SCENARIO
+            .replace("navigation.radial_error_nmi.max", measure)
+            .replace("\"10 nmi\"", limit);
+        std::fs::write(bench.at("short.toml"), other).unwrap();
+        let error = bench.refusal();
+        assert!(error.contains(words) && error.contains("no case can have"), "{measure}: {error}");
+    }
+    let seeds = CAMPAIGN
+        .replace("key = \"site.latitude\"", "key = \"seed\"")
+        .replace("[\"0 deg\", \"60 deg\"]", "[1, 2]");
+    let error = Bench::new(&seeds).refusal();
+    assert!(error.contains("which the campaign gives to each case"), "{error}");
+    let unsure = format!("{CAMPAIGN}[stop]\nrequirement = \"NAV-1\"\nconfidence = 0.01\n");
+    let error = Bench::new(&unsure).refusal();
+    assert!(error.contains("between 0.5 and 0.999999"), "{error}");
+}
+
+#[test]
 fn every_case_is_told_once() {
     let bench = Bench::new(CAMPAIGN);
     let (plan, folder) = (bench.plan(), bench.at("out"));

@@ -122,10 +122,15 @@ impl RunFollower {
         }
         self.before = *n;
         if now_ns >= self.next_ns {
+            let before_ns = self.next_ns.saturating_sub(1_000_000_000);
             self.next_ns = now_ns + 1_000_000_000;
+            let held = self.since_ns.iter().all(|since_ns| *since_ns <= before_ns);
             let bits =
                 [mix(&[n.latitude_rad, n.longitude_rad]), mix(&n.velocity_mps), mix(&n.q_nb)];
-            self.second(bits[0] ^ bits[1].rotate_left(21) ^ bits[2].rotate_left(42));
+            // A solution that is held isn't repeated: units may answer anew less than once a second.
+            if !held {
+                self.second(bits[0] ^ bits[1].rotate_left(21) ^ bits[2].rotate_left(42));
+            }
             if sample.is_some() {
                 self.fit.second(now_ns, n, is_free(output));
             }
@@ -166,14 +171,9 @@ impl RunFollower {
         }
     }
 
-    /// Compares the solution of a second with those before. One that is as a second ago is held, not repeated: units may
-    /// answer anew less than once a second.
+    /// Compares the solution of a second with those before.
     fn second(&mut self, hash: u64) {
         let there = self.remembered.len().min(self.renewed as usize);
-        let last = self.renewed.wrapping_sub(1) as usize % REMEMBERED;
-        if there > 0 && self.remembered[last] == hash {
-            return;
-        }
         self.repeated += u64::from(self.remembered[..there].contains(&hash));
         self.remembered[self.renewed as usize % REMEMBERED] = hash;
         self.renewed += 1;
