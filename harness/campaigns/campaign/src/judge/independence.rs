@@ -8,8 +8,7 @@ use crate::plan::factor_values::FactorValue;
 use crate::plan::{Case, Plan};
 use crate::report::combination::of_grid;
 use crate::store::facts::CaseFacts;
-use octant_statistics::cluster;
-pub use octant_statistics::cluster::RowResult;
+use octant_statistics::cluster::{self, RowResult};
 use std::collections::{BTreeMap, HashMap};
 
 /// Evidence of a case for a requirement.
