@@ -203,6 +203,7 @@ impl Parts {
                 series_hours: Vec::new(),
             }),
             alignment: None,
+            heading: None,
             counterfactual: None,
             baseline: self.baseline.as_ref().map(|(fired, refused)| BaselineMethod {
                 planned: None,

@@ -25,10 +25,13 @@ fn verdict_of(summary: &Summary, id: &str) -> Verdict {
 }
 
 /// A unit that levels the east gyro's rate turns by the bias over the Earth's rate in the horizon: sin ψ = −b / (Ω cos φ).
+///
+/// Navigation moves the heading on by what is of second order in ψ, 0.03 deg at 2.8 deg and 70 deg of latitude: headings here
+/// are off by 1.4 deg at most.
 #[test]
 fn a_bias_of_the_east_gyro_is_the_settle_point_error_of_its_closed_form() {
     for (latitude_deg, bias_degph) in
-        [(0.0, 0.25), (45.0, 0.25), (45.0, -0.15), (70.0, 0.25), (-33.0, -0.15)]
+        [(0.0, 0.25), (45.0, 0.25), (45.0, -0.15), (70.0, 0.1), (-33.0, -0.15), (-33.0, 0.25)]
     {
         let summary = run(
             "settle",
@@ -36,6 +39,13 @@ fn a_bias_of_the_east_gyro_is_the_settle_point_error_of_its_closed_form() {
                 &format!("site.latitude=\"{latitude_deg} deg\""),
                 "motion.heading=\"0 deg\"",
                 "procedure.heading_test.run_ups=1",
+                // No other error of the sensors than the bias.
+                "imu.gyro_scale={normal=\"0 ppm\"}",
+                "imu.gyro_misalignment={normal=\"0 arcsec\"}",
+                "imu.g_dependent={normal=\"0 deg/h/g\"}",
+                "imu.accel_bias={normal=\"0 ug\"}",
+                "imu.accel_scale={normal=\"0 ppm\"}",
+                "imu.accel_misalignment={normal=\"0 arcsec\"}",
                 &format!(
                     "imu.gyro_bias={{constant=[\"0 deg/h\",\"{bias_degph} deg/h\",\"0 deg/h\"]}}"
                 ),
@@ -46,9 +56,9 @@ fn a_bias_of_the_east_gyro_is_the_settle_point_error_of_its_closed_form() {
             EARTH_RATE_RADPS.to_degrees() * 3600.0 * f64::cos(f64::to_radians(latitude_deg));
         let expected = -f64::asin(bias_degph / horizon_degph).to_degrees();
         let found = heading.settle_point_error_deg.unwrap();
-        // Other errors of Table 1 leave up to 0.04 deg at 70 deg.
+        // The noise of the gyros leaves 0.53 arcmin (1σ) at 70 deg after the fine alignment, less elsewhere.
         assert!(
-            (found - expected).abs() < 0.05,
+            (found - expected).abs() < 3.0 * 0.53 / 60.0,
             "{latitude_deg}: found {found}, expected {expected}"
         );
         let limit = 0.75 / f64::cos(f64::to_radians(latitude_deg));

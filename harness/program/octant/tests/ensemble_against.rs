@@ -149,6 +149,7 @@ impl Bench {
                 series_hours: std::iter::once([0.0; 3]).chain(series).collect(),
             }),
             alignment: None,
+            heading: None,
             counterfactual: None,
             baseline: None,
             reference: None,
