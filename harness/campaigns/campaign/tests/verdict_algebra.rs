@@ -203,7 +203,6 @@ impl Parts {
                 series_hours: Vec::new(),
             }),
             alignment: None,
-            heading: None,
             counterfactual: None,
             baseline: self.baseline.as_ref().map(|(fired, refused)| BaselineMethod {
                 planned: None,

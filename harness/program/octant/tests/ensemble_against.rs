@@ -149,7 +149,6 @@ impl Bench {
                 series_hours: std::iter::once([0.0; 3]).chain(series).collect(),
             }),
             alignment: None,
-            heading: None,
             counterfactual: None,
             baseline: None,
             reference: None,

@@ -77,7 +77,6 @@ pub(crate) fn summary() -> Summary {
         inputs: Vec::new(),
         altered_streams: None,
         alignment: None,
-        heading: None,
         counterfactual: None,
         allan_deviation: None,
         pacing: None,
