@@ -175,7 +175,6 @@ fn data() -> ReportData {
             baseline_estimated_g_zz: Some(0.0),
         })),
         alignment: None,
-        heading: None,
         counterfactual: None,
         allan_deviation: None,
         pacing: None,
