@@ -218,27 +218,3 @@ impl Written {
         )
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn arrivals_stand_before_sentences_that_begin_a_line() {
-        let at = UNIX_EPOCH + Duration::from_millis(1_604_000_000_123);
-        let mut stamper = Stamper::default();
-        let mut kept = Vec::new();
-        // A sentence in two pieces, another one in one with the next, and one with a block of its own.
-        for came in
-            ["$HEHDT,12", "3.4,T*2B\r\n$HEROT,0.0,A*2B\r\n\\s:HE0001*46\\$HEHDT", ",1,T*1\n"]
-        {
-            stamper.write(came.as_bytes(), at, &mut kept);
-        }
-        // The sum by an exclusive or in Python.
-        assert_eq!(
-            String::from_utf8(kept).unwrap(),
-            "\\c:1604000000123*6A\\$HEHDT,123.4,T*2B\r\n\\c:1604000000123*6A\\$HEROT,0.0,A*2B\r\n\
-             \\s:HE0001*46\\$HEHDT,1,T*1\n"
-        );
-    }
-}

@@ -73,6 +73,45 @@ fn an_instrument_on_tcp_is_connected_to_or_listened_for() {
     assert_eq!(counts(&folder.path().join("listened.bin")), 300);
 }
 
+/// A time of arrival stands before each sentence that begins a line, in whatever pieces it comes, and not before one that
+/// has a block of its own.
+#[test]
+fn arrivals_stand_before_sentences() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = TcpListener::bind("127.0.0.1:0").unwrap();
+    let uri = format!("tcp:{}", server.local_addr().unwrap());
+    let pieces = ["$HEHDT,12", "3.4,T*2B\r\n$HEROT,0.0,A*2B\r\n\\s:HE0001*46\\$HEHDT", ",1,T*1\n"];
+    let served = std::thread::spawn(move || {
+        let mut connection = server.accept().unwrap().0;
+        for piece in pieces {
+            connection.write_all(piece.as_bytes()).unwrap();
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    });
+    let now_ms = || {
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+        u64::try_from(now.as_millis()).unwrap()
+    };
+    let begun_ms = now_ms();
+    let arguments = ["capture", &uri, "--stamp", "--out", "ship.nmea"];
+    let ended = program(&arguments).current_dir(folder.path()).output().unwrap();
+    let ended_ms = now_ms();
+    served.join().unwrap();
+    assert_eq!(ended.status.code(), Some(4), "the other end closed the connection");
+    let kept = std::fs::read_to_string(folder.path().join("ship.nmea")).unwrap();
+    let lines: Vec<&str> = kept.lines().collect();
+    for (line, sentence) in lines.iter().zip(["$HEHDT,123.4,T*2B", "$HEROT,0.0,A*2B"]) {
+        let (block, found) = line.strip_prefix('\\').unwrap().split_once('\\').unwrap();
+        assert_eq!(found, sentence);
+        let (parameter, sum) = block.split_once('*').unwrap();
+        let expected = parameter.bytes().fold(0, |sum, byte| sum ^ byte);
+        assert_eq!(sum, format!("{expected:02X}"), "the checksum of the block");
+        let stamp_ms: u64 = parameter.strip_prefix("c:").unwrap().parse().unwrap();
+        assert!((begun_ms..=ended_ms).contains(&stamp_ms), "{stamp_ms}");
+    }
+    assert_eq!(lines[2..], ["\\s:HE0001*46\\$HEHDT,1,T*1"]);
+}
+
 /// Sends datagrams until the file has grown to a size.
 fn send(to: SocketAddr, file: &Path, size: u64) {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();

@@ -2520,9 +2520,10 @@ class SourceReference(Section):
     """Velocity up, in place of down. Takes a column number from 1, or a column's name. Left out: down is given."""
 
 class SourceSolution(Section):
-    """How the solution of source.uri is read. Takes a table with skip, format, talker, delimiter, skip_lines,
-    comment, time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll,
-    angle_unit, velocity_unit. Default: solution: the defaults of its keys."""
+    """How the solution of source.uri is read. Takes a table with skip, format, talker, points, heading_time,
+    heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude, longitude,
+    height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Default: solution: the defaults of
+    its keys."""
 
     angle_unit: Literal["deg", "rad"]
     """Unit of the columns of angles: position and attitude. Takes one of "deg", "rad". Default: "deg"."""
@@ -2540,6 +2541,15 @@ class SourceSolution(Section):
     heading: int | str
     """Heading from north by east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
+    heading_rate: str
+    """NMEA: even rate of headings in a file without any time. Sentences that are missing can't be seen. Takes a
+    frequency such as "200 Hz". Left out: they have times."""
+    heading_start: str
+    """NMEA: time of the first heading of heading_rate, such as 2027-03-31T08:00:00Z. Takes a text in quotes.
+    Left out: 0 s on a scale of its own."""
+    heading_time: Literal["tag", "stamp", "cycle"]
+    """NMEA: time of headings without one, such as HDT and THS. Takes one of "tag", "stamp", "cycle". Default:
+    the first of tag, stamp and cycle that the file has."""
     height: int | str
     """Height above the ellipsoid, m. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
@@ -2555,6 +2565,9 @@ class SourceSolution(Section):
     pitch: int | str
     """Pitch, positive with the bow up. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
+    points: Literal["positions", "headings"]
+    """NMEA: sentences that make a point each. Takes one of "positions", "headings". Default: headings, where the
+    reference is true_heading or the file has no position; else positions."""
     roll: int | str
     """Roll, positive with the starboard side down. Takes a column number from 1, or a column's name. Default:
     the name of Octant's exports, where the header has it."""
@@ -2685,10 +2698,10 @@ class SourceText(Section):
     """Unit of the time stamp. Takes one of "s", "ms", "us", "ns". Default: "s"."""
 
 class SourceTrajectory(Section):
-    """The reference trajectory that a solution is scored against. Takes a table with file, offset,
-    offset_uncertainty, gap, format, talker, delimiter, skip_lines, comment, time_column, time_unit, latitude,
-    longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by
-    solution:FILE."""
+    """The reference trajectory that a solution is scored against. Takes a table with file, true_heading,
+    true_heading_uncertainty, offset, offset_uncertainty, gap, format, talker, points, heading_time,
+    heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude, longitude,
+    height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by solution:FILE."""
 
     angle_unit: Literal["deg", "rad"]
     """Unit of the columns of angles: position and attitude. Takes one of "deg", "rad". Default: "deg"."""
@@ -2701,7 +2714,7 @@ class SourceTrajectory(Section):
     """Velocity over ground, east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
     file: str
-    """Its file. Relative to the scenario. Takes a text in quotes."""
+    """Its file. Relative to the scenario. Takes a text in quotes. Left out: true_heading is the reference."""
     format: Literal["csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens"]
     """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens".
     Default: by the name's ending: nmea and nma; pos; sbet and out; others are columns of text."""
@@ -2711,6 +2724,15 @@ class SourceTrajectory(Section):
     heading: int | str
     """Heading from north by east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
+    heading_rate: str
+    """NMEA: even rate of headings in a file without any time. Sentences that are missing can't be seen. Takes a
+    frequency such as "200 Hz". Left out: they have times."""
+    heading_start: str
+    """NMEA: time of the first heading of heading_rate, such as 2027-03-31T08:00:00Z. Takes a text in quotes.
+    Left out: 0 s on a scale of its own."""
+    heading_time: Literal["tag", "stamp", "cycle"]
+    """NMEA: time of headings without one, such as HDT and THS. Takes one of "tag", "stamp", "cycle". Default:
+    the first of tag, stamp and cycle that the file has."""
     height: int | str
     """Height above the ellipsoid, m. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
@@ -2732,6 +2754,9 @@ class SourceTrajectory(Section):
     pitch: int | str
     """Pitch, positive with the bow up. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
+    points: Literal["positions", "headings"]
+    """NMEA: sentences that make a point each. Takes one of "positions", "headings". Default: headings, where the
+    reference is true_heading or the file has no position; else positions."""
     roll: int | str
     """Roll, positive with the starboard side down. Takes a column number from 1, or a column's name. Default:
     the name of Octant's exports, where the header has it."""
@@ -2746,6 +2771,11 @@ class SourceTrajectory(Section):
     header has it."""
     time_unit: Literal["s", "ms", "us", "ns"]
     """Unit of a time that is a number. Takes one of "s", "ms", "us", "ns". Default: "s"."""
+    true_heading: str
+    """Heading that was surveyed, as by a theodolite, of an instrument that stands still: it is the reference,
+    instead of a file. Takes an angle such as "30.5 deg". Left out: the reference is a file."""
+    true_heading_uncertainty: str
+    """How far true_heading may be off, 95 %. Takes an angle such as "30.5 deg". Left out: that of [decision]."""
     velocity_unit: Literal["m/s", "kn", "mm/s"]
     """Unit of the columns of velocities. Takes one of "m/s", "kn", "mm/s". Default: "m/s"."""
 
@@ -2791,9 +2821,10 @@ class Source(Section):
     def reference(self, value: SourceReference | Mapping[str, Any]) -> None: ...
     @property
     def solution(self) -> SourceSolution:
-        """How the solution of source.uri is read. Takes a table with skip, format, talker, delimiter,
-        skip_lines, comment, time_column, time_unit, latitude, longitude, height, north, east, heading, pitch,
-        roll, angle_unit, velocity_unit. Default: solution: the defaults of its keys."""
+        """How the solution of source.uri is read. Takes a table with skip, format, talker, points, heading_time,
+        heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude,
+        longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Default: solution:
+        the defaults of its keys."""
     @solution.setter
     def solution(self, value: SourceSolution | Mapping[str, Any]) -> None: ...
     @property
@@ -2805,10 +2836,11 @@ class Source(Section):
     def text(self, value: SourceText | Mapping[str, Any]) -> None: ...
     @property
     def trajectory(self) -> SourceTrajectory:
-        """The reference trajectory that a solution is scored against. Takes a table with file, offset,
-        offset_uncertainty, gap, format, talker, delimiter, skip_lines, comment, time_column, time_unit,
-        latitude, longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out:
-        needed by solution:FILE."""
+        """The reference trajectory that a solution is scored against. Takes a table with file, true_heading,
+        true_heading_uncertainty, offset, offset_uncertainty, gap, format, talker, points, heading_time,
+        heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude,
+        longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by
+        solution:FILE."""
     @trajectory.setter
     def trajectory(self, value: SourceTrajectory | Mapping[str, Any]) -> None: ...
     uri: str
