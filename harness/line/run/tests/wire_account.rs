@@ -75,3 +75,22 @@ fn every_loss_of_a_wire_is_counted_once() {
     let on_a_bus = account_of(LinkRecord { bus_load: Some(0.2), ..worn });
     assert!(on_a_bus.lines().contains(&"note: 40 CAN frames that belong to no message".into()));
 }
+
+proptest::proptest! {
+    /// Every message that came is in one place, however it came.
+    #[test]
+    fn the_sum_is_what_came(
+        received in 0..1_000_000_u64,
+        doubled in 0..1000_u64,
+        damaged in 0..1000_u64,
+        unreadable in 0..1000_u64,
+        missing in 0..1000_u64,
+    ) {
+        // An answer that came again came before.
+        let doubled = doubled.min(received);
+        let account = account_of(LinkRecord { received, doubled, damaged, unreadable, missing, ..link() });
+        proptest::prop_assert_eq!(account.read(), received + damaged + unreadable);
+        proptest::prop_assert_eq!(account.used_count(), received - doubled);
+        proptest::prop_assert_eq!(account.missing_count(), missing);
+    }
+}
