@@ -44,9 +44,11 @@ impl GivenOptions {
         ids: &[&str],
         reason: impl std::fmt::Display,
     ) -> Result<(), Failure> {
-        match self.options.iter().find(|(id, _)| ids.contains(&id.as_str())) {
-            Some((_, name)) => Err(Failure::input(format!("{name}: {reason}"))),
-            None => Ok(()),
+        let refused = self.options.iter().filter(|(id, _)| ids.contains(&id.as_str()));
+        let names: Vec<&str> = refused.map(|(_, name)| name.as_str()).collect();
+        if names.is_empty() {
+            return Ok(());
         }
+        Err(Failure::input(format!("{}: {reason}", names.join(", "))))
     }
 }

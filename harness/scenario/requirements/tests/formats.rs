@@ -47,8 +47,9 @@ fn verification() -> impl Strategy<Value = Verification> {
         prop::num::f64::NORMAL.prop_map(Limit::Number),
         "[0-9]{1,3}(\\.[0-9]{1,2})? (arcmin|deg/h|µg/√Hz|%)".prop_map(Limit::Quantity),
     ];
-    let probability = (1u32..1000).prop_map(|n| f64::from(n) / 1000.0);
-    let ensemble = maybe((probability.clone(), probability));
+    let pass = (1u32..1000).prop_map(|n| f64::from(n) / 1000.0);
+    let confidence = (500u32..1000).prop_map(|n| f64::from(n) / 1000.0);
+    let ensemble = maybe((pass, confidence));
     let comparison = prop::sample::select(Comparison::ALL.to_vec());
     let measure = prop_oneof![
         4 => ("\\|?[a-z_]{1,8}(\\.[a-z_0-9]{1,8}){0,3}", Just(false)),

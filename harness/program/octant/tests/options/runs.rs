@@ -79,6 +79,7 @@ pub(super) const ROWS: &[Row] = &[
     ("score", "--duration", &[Tested("score_solution::less_than_the_duration_is_no_pass"), Refused("score ../done --duration 1h", "--solution")]),
     ("score", "--skip", &[Tested("score_solution::an_exported_run_has_the_scores_of_the_run"), Refused("score ../done --skip 1h", "--solution")]),
     ("score", "--offset", &[Tested("score_solution::a_drift_is_scored_as_it_was_made"), Refused("score ../done --offset 1s", "--solution")]),
+    ("score", "--true-heading", &[Tested("score_headings::headings_alone_are_scored_against_a_surveyed_one"), Refused("score ../done --true-heading 1deg", "--solution")]),
     ("score", "--talker", &[Tested("solution_doubts::a_talker_is_chosen_by_its_letters"), Refused("score ../done --talker IN", "--solution")]),
     ("score", "--offset-uncertainty", &[Tested("score_solution::a_drift_is_scored_as_it_was_made"), Refused("score ../done --offset-uncertainty 1s", "--solution")]),
     ("score", "--set", &[Tested("score_solution::messages_of_a_unit_are_a_solution"), Refused("score ../done --set title=Ada", "--solution")]),

@@ -83,6 +83,7 @@ pub(super) const ROWS: &[Row] = &[
     ("serve", "--silence", &[Refused("serve --endpoint pty: --silence 99", "--silence: found 99"), Tested("live::a_harness_that_is_killed_leaves_a_device_that_serves_the_next")]),
     ("capture", "--out", &[Tested("capture::a_duration_and_a_silence_end_it")]),
     ("capture", "--duration", &[Tested("capture::a_duration_and_a_silence_end_it")]),
+    ("capture", "--stamp", &[Tested("capture::arrivals_stand_before_sentences")]),
     ("capture", "--silence", &[Tested("capture::a_duration_and_a_silence_end_it")]),
     // octant power
     ("power", "--channel", &[Tested("power::a_supply_is_looked_at_set_and_switched_by_hand"), Refused("power ../power.toml --channel 1 status", POWER)]),

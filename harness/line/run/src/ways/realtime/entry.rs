@@ -60,4 +60,6 @@ pub(super) struct Answer {
     /// Parameters, if they are new.
     pub(super) estimate: Option<ParameterEstimate>,
     pub(super) truth: Option<Truth>,
+    /// Whether the truth is that at the answer before, as the source says.
+    pub(super) stands: Option<bool>,
 }

@@ -169,12 +169,12 @@ impl<'a> Frames<'a> {
         step: InStep<'_>,
         sent: &Epoch,
         output: &Output,
-        truth: Option<Truth>,
+        (truth, stands): (Option<Truth>, Option<bool>),
     ) {
         let is_new = output.parameters_revision != self.revision;
         let estimate = is_new.then(|| endpoint.parameters());
         let measured = Measured::of(endpoint, output);
-        let answer = Answer { output: *output, measured, estimate, truth };
+        let answer = Answer { output: *output, measured, estimate, truth, stands };
         let is_in = self.lay(match step {
             InStep::First(clean) => Entry::Frame {
                 source: *clean.source,
@@ -282,7 +282,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
         sent: &Epoch,
         output: &Output,
     ) -> Result<Option<Ended>, RunError> {
-        self.pass_on(endpoint, step, sent, output, source.truth());
+        self.pass_on(endpoint, step, sent, output, (source.truth(), source.truth_stands()));
         Ok(over(output))
     }
 
@@ -322,7 +322,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
                 return Err(self.silent(endpoint));
             };
             let step = InStep::Further { step_ns: owed.step_ns };
-            self.pass_on(endpoint, step, &owed.epoch, output, None);
+            self.pass_on(endpoint, step, &owed.epoch, output, (None, None));
             if let Some(ended) = over(output) {
                 return Ok(ended);
             }

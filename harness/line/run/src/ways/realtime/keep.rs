@@ -77,7 +77,8 @@ fn answered(
     answer: &Answer,
     records: &mut Records<'_>,
 ) -> Result<(), RecorderError> {
-    let Answer { output, measured, estimate, truth } = answer;
+    let Answer { output, measured, estimate, truth, stands } = answer;
     let estimate = estimate.as_ref();
-    records.take(&Answered { step, sent, altered, output, measured, estimate }, || None, || *truth)
+    let answered = Answered { step, sent, altered, output, measured, estimate };
+    records.take(&answered, || *stands, || *truth)
 }
