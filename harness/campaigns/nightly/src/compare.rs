@@ -15,6 +15,7 @@ pub use super::change::{Change, Tested, Thresholds, tested};
 use super::night::{CampaignNight, Night, Program};
 use super::results::{CaseRow, SCORED_LATER};
 use super::suite::SuiteResult;
+use octant_evidence::manifest::shell_path;
 use octant_score::numerics::in_words;
 use octant_statistics::multiple::holm;
 use octant_statistics::paired::PassPairs;
@@ -347,7 +348,7 @@ impl NightComparison {
                 before: old.and_then(|old| old.verdict),
                 now: result.verdict,
                 reason: result.problem.clone().unwrap_or_default(),
-                rerun: format!("octant run {}", result.scenario.display()),
+                rerun: format!("octant run {}", shell_path(&result.scenario)),
             };
             match (old.map(|old| old.problem.is_some()), result.problem.is_some()) {
                 (None | Some(false), true) => self.newly_failing.push(turned()),

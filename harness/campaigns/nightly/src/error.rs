@@ -1,6 +1,7 @@
 //! Reasons why a night can't be run, read or accepted.
 
 use octant_campaign::table::TableError;
+use octant_evidence::manifest::shell_path;
 use octant_selftest::error::FileError;
 use std::path::{Path, PathBuf};
 
@@ -52,7 +53,7 @@ pub enum NightError {
     #[error("failed to {0}")]
     Table(#[from] TableError),
     /// The accepted baseline can't be read.
-    #[error("{error}; octant nightly accept --history {history} accepts another")]
+    #[error("{error}; octant nightly accept --history {} accepts another", shell_path(.history))]
     Baseline {
         /// Problem found.
         error: Box<NightError>,

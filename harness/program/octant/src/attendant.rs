@@ -5,6 +5,7 @@ use crate::operator_page::{BoundOperatorPage, OperatorPage};
 use crate::operator_terminal::{OperatorTerminal, TypedLine};
 use crate::terminal::note;
 use octant_base::control::{Control, SetAtEnd};
+use octant_evidence::manifest::shell_path;
 use octant_operator::mailbox::Mailbox;
 use octant_operator::script::{self, ScriptAnswer};
 use octant_operator::step::runs_on;
@@ -113,7 +114,7 @@ pub(crate) struct Attendant {
     terminal: bool,
     /// Served until the run is over.
     _page: Option<OperatorPage>,
-    /// The folder under the name that it keeps when the run ends.
+    /// The folder under the name that it keeps when the run ends, as a word of a command line.
     folder: String,
 }
 
@@ -131,7 +132,7 @@ impl Attendant {
         let page = page.map(|page| page.serve(&scenario.title, &desk));
         let _page = page.transpose()?;
         let name = folder.display().to_string();
-        let folder = name.strip_suffix(".partial").unwrap_or(&name).to_owned();
+        let folder = shell_path(Path::new(name.strip_suffix(".partial").unwrap_or(&name)));
         Ok(Self { desk, mailbox, terminal, _page, folder })
     }
 

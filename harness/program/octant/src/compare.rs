@@ -7,6 +7,7 @@ use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
 use octant_base::display::{DisplayUnits, UnitChoice};
+use octant_evidence::manifest::shell_path;
 use octant_run::paired::{MethodSide, paired};
 use octant_scenario::{Method, Scenario};
 use octant_score::compare::MethodComparison;
@@ -116,12 +117,12 @@ fn write_results(
 /// Returns the command line that makes the comparison again.
 fn rerun(arguments: &ScenarioArguments, against: Option<&Path>, seeds: u64) -> String {
     let ScenarioArguments { scenario, set } = arguments;
-    let mut line = format!("octant compare {}", scenario.display());
+    let mut line = format!("octant compare {}", shell_path(scenario));
     for set in set {
         line += &format!(" --set '{set}'");
     }
     if let Some(against) = against {
-        line += &format!(" --against {}", against.display());
+        line += &format!(" --against {}", shell_path(against));
     }
     line + &format!(" --seeds {seeds}")
 }

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::{print, write};
 use clap::{Args, ValueEnum};
+use octant_evidence::manifest::shell_path;
 use octant_scenario::{FLICKER, GRADES, GradeSheet, Scenario};
 use octant_verdict::Verdict;
 use std::io::{BufRead, IsTerminal, Write};
@@ -99,8 +100,8 @@ pub(super) fn command(arguments: &NewArguments) -> Result<Verdict, Failure> {
     let folder = file.parent().unwrap_or(Path::new(""));
     Scenario::parse(&text, &file.display().to_string(), folder, &[]).map_err(Failure::input)?;
     write(file, &text)?;
-    let file = file.display();
-    print(&format!("{file}\nnext: octant observe {file}\nnext: octant run {file}\n"))?;
+    let (named, file) = (file.display(), shell_path(file));
+    print(&format!("{named}\nnext: octant observe {file}\nnext: octant run {file}\n"))?;
     Ok(Verdict::Pass)
 }
 

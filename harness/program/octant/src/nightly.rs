@@ -18,7 +18,7 @@ use octant_campaign::merge;
 use octant_campaign::merge::results;
 use octant_campaign::plan::Plan;
 use octant_campaign::store::CampaignResults;
-use octant_evidence::manifest::{Machine, operator};
+use octant_evidence::manifest::{Machine, operator, shell_path};
 use octant_nightly::accept::{self, Baseline, accept as accept_night};
 use octant_nightly::compare::{Side, Thresholds, compare};
 use octant_nightly::history::History;
@@ -162,7 +162,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let rows = accept::rows(&folder, &night).map_err(Failure::bench)?;
     let limits = Thresholds { alpha: *alpha, least: *least };
     let rerun = |campaign: &str, case: &str| {
-        format!("octant campaign case {} {case}", folder.join(campaign).display())
+        format!("octant campaign case {} {case}", shell_path(&folder.join(campaign)))
     };
     let against = |baseline: &Baseline| {
         let before = Side { night: &baseline.night, rows: &baseline.rows };
@@ -202,7 +202,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     } else if name.is_none() {
         text += &format!(
             "octant nightly accept --history {} makes this night the baseline\n",
-            history.display()
+            shell_path(history)
         );
     }
     text += &format!(

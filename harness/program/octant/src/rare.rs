@@ -9,6 +9,7 @@ use clap::Args;
 use octant_base::control::Control;
 use octant_base::failing::Failing;
 use octant_base::pool::processors;
+use octant_evidence::manifest::shell_path;
 use octant_rare::estimators::estimate::RarePlan;
 use octant_rare::runs::error::RareError;
 use octant_rare::runs::failure::{failure, requirement};
@@ -151,7 +152,7 @@ fn estimated(
             let seed = run.seed;
             write(&file, text)?;
             if !json {
-                print(&format!("octant run {} --seed {seed}\n", file.display()))?;
+                print(&format!("octant run {} --seed {seed}\n", shell_path(&file)))?;
             }
             Ok(found.verdict)
         }

@@ -11,6 +11,7 @@ use octant_base::control::Control;
 use octant_base::failing::Failing;
 use octant_base::names::suggestion;
 use octant_base::pool::processors;
+use octant_evidence::manifest::shell_path;
 use octant_faults::catalogue::FaultKind;
 use octant_scenario::Scenario;
 use octant_search::bench::SearchBench;
@@ -308,7 +309,7 @@ fn conclude(
         if let (Some(folder), Some(_)) = (target.out, &scenario) {
             print(&format!(
                 "octant run {} --seed {}\n",
-                folder.join("worst.toml").display(),
+                shell_path(&folder.join("worst.toml")),
                 bench.seed()
             ))?;
         }
@@ -354,7 +355,7 @@ fn rerun(arguments: &Arguments, used_seed: u64) -> String {
     let ScenarioArguments { scenario, set } = scenario;
     let SearchingArguments { runs, pairs, enough, strategy, search_seed, after, out: _, json: _ } =
         searching;
-    let mut line = format!("octant faults search {}", scenario.display());
+    let mut line = format!("octant faults search {}", shell_path(scenario));
     for set in set {
         line += &format!(" --set '{set}'");
     }
@@ -362,13 +363,13 @@ fn rerun(arguments: &Arguments, used_seed: u64) -> String {
         line += &format!(" --kinds {}", kinds.join(","));
     }
     if let Some(space) = space {
-        line += &format!(" --space {}", space.display());
+        line += &format!(" --space {}", shell_path(space));
     }
     if let StrategyName::Latin = strategy {
         line += " --strategy latin";
     }
     if let Some(folder) = after {
-        line += &format!(" --after {}", folder.display());
+        line += &format!(" --after {}", shell_path(folder));
     }
     if let Some(enough) = enough {
         line += &format!(" --enough {enough}");

@@ -8,6 +8,7 @@ use clap::Args;
 use octant_base::control::Control;
 use octant_campaign::sweep::{SweepAxis, SweepError, cells_of, indices, sweep};
 use octant_campaign_pages::sweep as sweep_page;
+use octant_evidence::manifest::shell_path;
 use octant_scenario::Scenario;
 use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
@@ -140,7 +141,7 @@ fn rerun(arguments: &Arguments, used_seed: u64) -> String {
     // Where the results go makes no other sweep, nor do the parallel runs.
     let Arguments { scenario, over, fault, seed: _, jobs: _, out: _, json: _ } = arguments;
     let ScenarioArguments { scenario, set } = scenario;
-    let mut line = format!("octant faults sweep {}", scenario.display());
+    let mut line = format!("octant faults sweep {}", shell_path(scenario));
     for set in set {
         line += &format!(" --set '{set}'");
     }

@@ -90,3 +90,23 @@ fn failed_and_missing_cases_run_again_and_count_once() {
     run(&["merge", "a"], 0);
     assert!(tables(&folder.path().join("a")) == expected);
 }
+
+/// The lines that say what comes next can be pasted into a shell.
+#[test]
+fn folders_with_spaces_are_quoted_in_the_commands_that_come_next() {
+    let folder = planned();
+    let run = |arguments: &[&str], status| campaign_of(folder.path(), arguments, status);
+    std::fs::rename(folder.path().join("a"), folder.path().join("it's a")).unwrap();
+    let said = run(&["run", "it's a", "--only", "bad"], 1);
+    assert!(said.contains(r"next: octant campaign case 'it'\''s a' "), "{said}");
+    assert!(said.contains(r"next: octant campaign run 'it'\''s a'   (2 cases "), "{said}");
+    let said = run(&["run", "it's a"], 1);
+    for command in ["merge", "report"] {
+        let line = format!(r"next: octant campaign {command} 'it'\''s a'");
+        assert!(said.lines().any(|said| said == line), "{said}");
+    }
+    let file = folder.path().join("a b.toml");
+    std::fs::copy(folder.path().join("campaign.toml"), &file).unwrap();
+    let (_, said) = ended(octant_in(folder.path(), &["campaign", "run", "a b.toml"]), 2);
+    assert!(said.contains("octant campaign plan 'a b.toml' makes one"), "{said}");
+}

@@ -70,6 +70,9 @@ fn a_new_scenario_is_valid_and_needs_force_to_be_replaced() {
     };
     let (said, _) = new(&["--instrument", "tactical-mems", "--limit", "300 nmi"], 0);
     assert_eq!(said, "bench.toml\nnext: octant observe bench.toml\nnext: octant run bench.toml\n");
+    let (said, _) = ended(octant_in(folder.path(), &["new", "a bench.toml", "--defaults"]), 0);
+    let next = "next: octant observe 'a bench.toml'\nnext: octant run 'a bench.toml'\n";
+    assert_eq!(said, format!("a bench.toml\n{next}"));
     let file = folder.path().join("bench.toml");
     let scenario = Scenario::load(&file, &[]).unwrap();
     assert_eq!((scenario.title.as_str(), scenario.requirements.len()), ("bench", 1));

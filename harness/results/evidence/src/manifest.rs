@@ -382,6 +382,12 @@ pub fn shell_line(words: &[String]) -> String {
     quoted.join(" ")
 }
 
+/// Renders a path as a word of a command line, with quotes where a POSIX shell needs them.
+#[must_use]
+pub fn shell_path(path: &Path) -> String {
+    shell_line(&[path.display().to_string()])
+}
+
 /// A difference between a folder and its manifest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FolderDifference {

@@ -1,5 +1,6 @@
 //! Finds the files of a run: `RUN.partial` while it is in progress, `RUN` afterwards.
 
+use octant_evidence::manifest::shell_path;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ pub enum PlaceError {
     /// No run is in progress.
     #[error(
         "find a run that goes on: there is no folder *{PARTIAL} with a {RECORDING} in {}; a run that \
-         has ended is named: octant watch {}/NAME", .folder.display(), .folder.display()
+         has ended is named: octant watch {}/NAME", .folder.display(), shell_path(.folder)
     )]
     NoneGoesOn {
         /// Folder that was searched.

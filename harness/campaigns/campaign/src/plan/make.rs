@@ -4,6 +4,7 @@ use super::case_id::{CaseId, NoCaseId};
 use super::draw::{At, Draws};
 use super::factor_values::FactorValue;
 use super::possible::{key_of, why_not};
+use super::progress::{PlanStage, Tell, told};
 use super::requirements::{self, Planned};
 use super::shared::{SharedText, SharedTexts};
 use super::shared_cases::SharedParts;
@@ -25,18 +26,18 @@ fn level_of(factors: &[FactorSpec], cell: u64, index: usize) -> usize {
 }
 
 /// A campaign file, from which the cases of a plan are made.
-struct PlanMaker {
-    campaign: Campaign,
+pub(super) struct PlanMaker {
+    pub(super) campaign: Campaign,
     path: PathBuf,
     /// Number of cells of the grid.
-    grid: u64,
+    pub(super) grid: u64,
     /// Number of cases.
     count: u64,
-    draws: Draws,
+    pub(super) draws: Draws,
     of_file: Vec<Planned>,
     not_by_test: Vec<String>,
     accounts: Vec<Account>,
-    scenarios: Vec<PlannedScenario>,
+    pub(super) scenarios: Vec<PlannedScenario>,
 }
 
 impl PlanMaker {
@@ -85,17 +86,22 @@ impl PlanMaker {
         let members = || self.campaign.scenarios.iter().zip(&self.scenarios);
         (0..self.campaign.replicates).flat_map(move |replicate| {
             members().flat_map(move |(member, planned)| {
-                (0..self.grid).map(move |cell| self.case(replicate, member, planned, cell))
+                (0..self.grid).map(move |cell| {
+                    let drawn = |index| self.draws.at(index, replicate);
+                    self.case_with(replicate, member, planned, cell, drawn)
+                })
             })
         })
     }
 
-    fn case(
+    /// Makes a case of a cell of the grid; `drawn` are the draws by the index of the factor.
+    pub(super) fn case_with(
         &self,
         replicate: u32,
         member: &Member,
         planned: &PlannedScenario,
         cell: u64,
+        drawn: impl Fn(usize) -> At,
     ) -> Result<Case, PlanError> {
         let (mut set, mut faults) = (member.set.clone(), None);
         let mut values = Vec::new();
@@ -103,7 +109,7 @@ impl PlanMaker {
         for (index, factor) in factors.iter().enumerate() {
             let at = match factor.levels.grid() {
                 Some(_) => At::Level(level_of(factors, cell, index)),
-                None => self.draws.at(index, replicate),
+                None => drawn(index),
             };
             values.extend(give(&mut set, &mut faults, factor, at));
         }
@@ -166,10 +172,10 @@ impl PlanMaker {
     }
 }
 
-/// Cases that are made while they are written.
+/// Cases that come one after another while they are written.
 struct CaseStream<I>(RefCell<I>);
 
-impl<I: Iterator<Item = Case>> Serialize for CaseStream<I> {
+impl<I: Iterator<Item: Serialize>> Serialize for CaseStream<I> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(&mut *self.0.borrow_mut())
     }
@@ -181,17 +187,27 @@ impl Plan {
     /// # Errors
     /// If the campaign, one of its scenarios or one of its cases isn't valid.
     pub fn of(path: &Path) -> Result<Self, PlanError> {
+        Self::of_told(path, &|_, _, _| ())
+    }
+
+    /// Builds the plan of a campaign file, and tells how far it is.
+    ///
+    /// # Errors
+    /// As [`Plan::of`].
+    pub fn of_told(path: &Path, tell: Tell<'_>) -> Result<Self, PlanError> {
         let maker = PlanMaker::of(path)?;
-        let mut cases = Vec::with_capacity(usize::try_from(maker.count).unwrap_or(0));
+        let count = usize::try_from(maker.count).unwrap_or(0);
+        let mut cases = Vec::with_capacity(count);
         let mut parts = SharedParts::default();
-        for case in maker.cases() {
+        for case in told(maker.cases(), PlanStage::Making, count, tell) {
             cases.push(parts.share(case?));
         }
         maker.check(&cases)?;
-        let mut plan = Self { cases, ..maker.head()? };
-        plan.check_cases(&plan.cases)?;
-        plan.id = plan.hash();
-        Ok(plan)
+        let head = maker.head()?;
+        maker.check_set_up(&head, &cases, tell)?;
+        let hashed = told(cases.iter(), PlanStage::Hashing, count, tell);
+        let id = head.hash_with(&CaseStream(RefCell::new(hashed)));
+        Ok(Self { id, cases, ..head })
     }
 
     /// Returns whether a campaign file gives this plan, without a second list of its cases.
@@ -206,7 +222,7 @@ impl Plan {
                 return Ok(false);
             }
             maker.check(&self.cases)?;
-            head.check_cases(&self.cases).map(|()| true)
+            maker.check_set_up(&head, &self.cases, &|_, _, _| ()).map(|()| true)
         };
         is_same().unwrap_or(false)
     }

@@ -10,7 +10,9 @@ pub mod factor_values;
 pub(crate) mod make;
 pub mod planned;
 mod possible;
+pub mod progress;
 pub mod requirements;
+mod set_up;
 pub(crate) mod shard;
 pub mod shared;
 mod shared_cases;
@@ -359,28 +361,6 @@ impl Plan {
             bundled.requirements.iter().try_for_each(PlannedFile::check)?;
         }
         self.scenarios.iter().try_for_each(PlannedScenario::check_file)
-    }
-
-    /// Checks that each of these cases can be set up with its scenarios, before any is run.
-    pub(super) fn check_cases(&self, cases: &[Case]) -> Result<(), PlanError> {
-        // If nothing is drawn, replicates of a combination differ in their seed alone.
-        let mut seen = std::collections::HashSet::new();
-        for case in cases {
-            if seen.insert((&case.scenario, &case.set, &case.faults)) {
-                let scenario = self.planned(case)?.with(case)?;
-                if !scenario.source.has_plant() || scenario.realtime.by_clock {
-                    return Err(PlanError::Contradiction {
-                        campaign: self.campaign.clone(),
-                        reason: format!(
-                            "scenario {:?} is not simulated: a campaign needs source.uri = \"plant\", \
-                             and realtime.pace = \"free\"",
-                            case.scenario
-                        ),
-                    });
-                }
-            }
-        }
-        Ok(())
     }
 }
 

@@ -11,12 +11,14 @@ pub(super) mod run;
 use crate::failure::Failure;
 use crate::given::GivenOptions;
 use crate::place::{CampaignPlace, Needs};
+use crate::progress_bar::ProgressBar;
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::execute::{ExecuteError, Shard};
 use octant_campaign::judge::status;
 use octant_campaign::judge::trace::{requirements_of, with_those_of_scenarios};
+use octant_campaign::plan::progress::PlanStage;
 use octant_campaign::plan::{Case, FILE_NAME, Plan, PlanError, PlanWritten};
 use octant_campaign::store::CampaignResults;
 use octant_verdict::Verdict;
@@ -32,7 +34,7 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Plan the cases of a campaign, and check every one.
+    /// Plan the cases of a campaign, and check them.
     Plan {
         /// The campaign, a TOML file.
         #[arg(value_name = "CAMPAIGN")]
@@ -188,10 +190,25 @@ impl From<ExecuteError> for Failure {
 }
 
 fn plan(campaign: &Path, out: Option<&Path>, extend: bool) -> Result<Verdict, Failure> {
-    let plan = Plan::of(campaign)?;
+    let bar = ProgressBar::new(None, |progress| progress.message.clone());
+    let tell = |stage: PlanStage, done: usize, total: usize| {
+        bar.update(|progress| {
+            (progress.done, progress.total) = (done as u64, Some(total as u64));
+            progress.message = format!("{done} of {total}, {}", stage.words());
+        });
+    };
+    let plan = Plan::of_told(campaign, &tell);
+    bar.finish();
+    let plan = plan?;
     let stem = campaign.file_stem().map_or("campaign".into(), |stem| stem.to_string_lossy());
     let folder = out.map_or_else(|| Path::new("runs").join(stem.as_ref()), Path::to_owned);
-    let written = plan.write(&folder, extend)?;
+    bar.update(|progress| {
+        progress.total = None;
+        progress.message = format!("writing {}", folder.join(FILE_NAME).display());
+    });
+    let written = plan.write(&folder, extend);
+    bar.finish();
+    let written = written?;
     let what = match written {
         PlanWritten::New => String::new(),
         PlanWritten::There => ", in a plan that exists already".to_owned(),

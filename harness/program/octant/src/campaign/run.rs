@@ -20,6 +20,7 @@ use octant_campaign::merge;
 use octant_campaign::merge::results;
 use octant_campaign::plan::Plan;
 use octant_campaign::store::CampaignResults;
+use octant_evidence::manifest::shell_path;
 use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -265,7 +266,7 @@ fn conclude(
 
 /// Lists the commands that come next.
 fn next(folder: &Path, is_selected: bool, status: &status::CampaignStatus) -> String {
-    let folder = folder.display();
+    let folder = shell_path(folder);
     let mut text = String::new();
     if let Some(bad) = status.bad.first() {
         text += &format!(
