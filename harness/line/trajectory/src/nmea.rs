@@ -306,7 +306,7 @@ impl Begun {
     fn has_heading_of(&self, sentence: &Sentence) -> bool {
         let both = self.heading.zip(sentence.heading);
         both.is_some_and(|(there, said)| {
-            there.talker == said.talker && !(said.has_mode && !there.has_mode)
+            there.talker == said.talker && (there.has_mode || !said.has_mode)
         })
     }
 

@@ -303,7 +303,8 @@ fn limits_and_requirements_come_from_the_scenario_and_not_from_the_summary() {
     let accepted = |summary: &mut Value| {
         summary["decision"]["rule"] = "simple-acceptance".into();
     };
-    let edits: [(&str, &dyn Fn(&mut Value)); 4] = [
+    type Edit<'a> = (&'a str, &'a dyn Fn(&mut Value));
+    let edits: [Edit<'_>; 4] = [
         ("NAV-1 is navigation.radial_error_nmi.max", &raised),
         ("NAV-1 is missing: scenario.toml requires", &dropped),
         ("NAV-9 isn't a requirement of scenario.toml", &renamed),

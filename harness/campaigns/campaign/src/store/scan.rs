@@ -64,15 +64,14 @@ pub(super) fn scan_from(
     let mut reader = Source::of(file, bytes);
     let mut first = vec![0; FILE_HEAD.min(usize::try_from(bytes).unwrap_or(FILE_HEAD))];
     reader.exact(0, &mut first).map_err(system)?;
-    let version;
-    match read_file_head(&first) {
-        FileHead::Whole(found) => version = found,
+    let version = match read_file_head(&first) {
+        FileHead::Whole(found) => found,
         FileHead::Torn => return Ok(Scanned { end: 0, bytes, version: SCHEMA }),
         FileHead::Version(found) => {
             return Err(PartError::Version { path: path.to_owned(), found });
         }
         FileHead::Foreign => return Err(PartError::Foreign { path: path.to_owned() }),
-    }
+    };
     let mut end = from;
     while end < bytes {
         match reader.record(end).map_err(system)? {

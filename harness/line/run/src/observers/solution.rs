@@ -30,9 +30,9 @@ pub(super) struct SolutionErrors {
 /// Error of latitude and longitude, rad; `None` where the unit doesn't tell a position.
 pub(super) fn position_error(tells: Tells, output: &Output, truth: &Truth) -> Option<[f64; 2]> {
     let computed = &output.navigation;
-    tells.position.then(|| {
-        [computed.latitude_rad - truth.latitude_rad, computed.longitude_rad - truth.longitude_rad]
-    })
+    let error =
+        [computed.latitude_rad - truth.latitude_rad, computed.longitude_rad - truth.longitude_rad];
+    tells.position.then_some(error)
 }
 
 /// Error of the velocity over ground, north and east, m/s; `None` where unit or source don't tell a
