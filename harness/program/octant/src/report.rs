@@ -23,7 +23,7 @@ use octant_run::{Observers, unit};
 use octant_sample::Parameters;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use octant_scenario::file_names::FileNames;
-use octant_scenario::{Method, Scenario};
+use octant_scenario::{HeadingCondition, Method, Scenario};
 use octant_score::numerics::differs;
 use octant_score::rederive;
 use octant_score::summary::Summary;
@@ -119,6 +119,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
         covariance: covariance(&manifest, folder)?,
         requirement_texts: octant_run::assemble::requirement_texts(&scenario),
+        requirement_clauses: scenario.requirement_clauses(),
+        heading_condition: HeadingCondition::of(&scenario).words(),
         convergence: observed.convergence.points,
         nis: observed.measurements.nis,
         gimbals: observed.gimbals.points,

@@ -95,6 +95,47 @@ fn headings_alone_are_scored_against_a_surveyed_one() {
 }
 
 #[test]
+fn the_shipped_limits_on_an_output_are_those_of_its_rates_of_turn() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let heading = |t: f64| (350.0 + 80.0 * (0.2 * t).sin()).rem_euclid(360.0);
+    let clock =
+        |k: u32| format!("2026-11-20T10:{:02}:{:06.3}Z", k / 600, f64::from(k % 600) / 10.0);
+    let scenario = crate::architecture::root().join("fixtures/scenarios/heading/output.toml");
+    let scored = |late_s: f64| {
+        let at = |k: u32| f64::from(k) / 10.0;
+        let device: String = (0..6000)
+            .map(|k| {
+                let shown = heading(at(k) - late_s);
+                format!("{} {}", clock(k), sentence(&format!("HEHDT,{shown:.1},T")))
+            })
+            .collect();
+        let table: String = (0..6000)
+            .map(|k| {
+                let body = format!("PSXN,23,0.00,0.00,{:.3},0.00", heading(at(k)));
+                format!("{} {}", clock(k), sentence(&body))
+            })
+            .collect();
+        std::fs::write(here.join("device.nmea"), device).unwrap();
+        std::fs::write(here.join("table.nmea"), table).unwrap();
+        let files = ["--solution", "device.nmea", "--reference", "table.nmea", "--scenario"];
+        score(here, &[&files[..], &[scenario.to_str().unwrap()]].concat())
+    };
+    // At up to 10 deg/s 20 ms are 0.2 deg, and 70 ms 0.7 deg; at up to 16 deg/s 70 ms are 1.1 deg.
+    let (status, said) = scored(0.02);
+    assert_eq!(status, Some(0), "{said}");
+    let (status, said) = scored(0.07);
+    assert_eq!(status, Some(1), "{said}");
+    let found = summary(here);
+    let verdicts: Vec<_> = (found["requirements"].as_array().unwrap().iter())
+        .map(|result| (result["id"].as_str().unwrap(), result["verdict"].as_str().unwrap()))
+        .collect();
+    let expected =
+        [("MSC116-4.3.2.1", "pass"), ("MSC116-4.3.2.4-10", "fail"), ("MSC116-4.3.2.4-20", "pass")];
+    assert_eq!(verdicts, expected);
+}
+
+#[test]
 fn latency_and_follow_up_are_measures_of_a_requirement() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();

@@ -48,6 +48,10 @@ pub struct ReportData {
     pub covariance: Option<Box<[[f64; PARAMETER_COUNT]; PARAMETER_COUNT]>>,
     /// Texts of the requirements by their ids.
     pub requirement_texts: BTreeMap<String, String>,
+    /// Documents and clauses of the requirements by their ids, where they have one.
+    pub requirement_clauses: BTreeMap<String, String>,
+    /// Condition of a heading test: latitude, heading, motion.
+    pub heading_condition: String,
     /// Health events, in order of time.
     pub events: Vec<HealthEvent>,
     /// Dispositions of the discrepancies.

@@ -5,12 +5,14 @@
 //! - [`chart`] draws lines as inline SVG in the colours of the page; `script/` draws them again for the
 //!   reader's width and range, with one cursor for all of them
 //! - [`fault_picture`] draws what a kind of fault does to a run, as one SVG
+//! - [`certificate`] is the first page of a heading test, of a run or a campaign
 //! - [`page`] is the frame of every page: style, script, contents
 //! - [`filtered`], [`innovations`] and [`marks`] have what the page of a run derives for its plots: scales,
 //!   statistics, moves and stops
 
 mod allan;
 mod calibration;
+pub mod certificate;
 pub mod chart;
 pub mod compare;
 mod convergence;

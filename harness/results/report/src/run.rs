@@ -4,6 +4,7 @@ pub use super::data::{ReportData, ReportProvenance, StopLabel};
 
 use super::allan::allan;
 use super::calibration::calibration;
+use super::certificate;
 use super::counterfactual::counterfactual;
 use super::drift::drift;
 use super::gimbals::gimbals;
@@ -47,6 +48,7 @@ pub fn render(data: &ReportData) -> String {
         Section::new("provenance", "Provenance", provenance(data)),
     ];
     let body = html! {
+        @if let Some(certificate) = certificate::of_run(data) { (certificate::page(&certificate)) }
         (header(data))
         (figures(summary, &data.units))
         (sections(&all))

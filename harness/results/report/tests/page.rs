@@ -158,6 +158,8 @@ fn data() -> ReportData {
         latitude_rad: Some(0.53),
         sample_period_s: Some(0.005),
         covariance: Some(covariance),
+        requirement_clauses: std::collections::BTreeMap::new(),
+        heading_condition: String::new(),
         requirement_texts: [("NAV-1".to_owned(), "The longitude <shall> stay close.".to_owned())]
             .into(),
         events: vec![event(1.2, "innovation rejected"), event(7.5, "gap")],

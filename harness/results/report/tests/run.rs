@@ -126,7 +126,7 @@ fn navigation(residual_g_zz: f64, tilt_arcsec: f64) -> NavigationScore {
     scorer.finish(HeightChannel::Held).unwrap()
 }
 
-fn data() -> ReportData {
+pub(crate) fn data() -> ReportData {
     let (eight, estimate) = calibration("eight", true);
     let (six, six_estimate) = calibration("six", false);
     let g = |p: &Parameters| p.g_dependent[8];
@@ -206,6 +206,8 @@ fn data() -> ReportData {
         latitude_rad: Some(LATITUDE),
         sample_period_s: Some(0.005),
         covariance: None,
+        requirement_clauses: BTreeMap::new(),
+        heading_condition: String::new(),
         requirement_texts: BTreeMap::new(),
         units: DisplayUnits::default(),
         summary,

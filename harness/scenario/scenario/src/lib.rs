@@ -35,9 +35,9 @@ pub use files::FilePlaces;
 pub use keys::{SCHEMA, fault_dimension};
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DescriptionChoice, DocksideSpec, Drive,
-    EndpointSpec, EntryPlace, Fault, FileName, FileNameError, Fmu, HeadingTestKind,
-    HeadingTestSpec, Instrument, InstrumentLog, InterfaceChoice, KnownStamps, Live, Made, Mapped,
-    Messages, Method, MotionComponent, MotionSpan, MotionSpec, NumberedStops,
+    EndpointSpec, EntryPlace, Fault, FileName, FileNameError, Fmu, HeadingCondition,
+    HeadingTestKind, HeadingTestSpec, Instrument, InstrumentLog, InterfaceChoice, KnownStamps,
+    Live, Made, Mapped, Messages, Method, MotionComponent, MotionSpan, MotionSpec, NumberedStops,
     ParameterDistribution, PowerCycle, Process, Realtime, RecordSpec, RequirementSpec, Scenario,
     Set, Setting, ShipSpectrum, SourceSpec, Speaks, TableDriver, UnitPulses, UnknownFault,
 };

@@ -5,6 +5,7 @@
 //! nothing of host or clock: the same results give the same bytes; origin and time are in the
 //! manifest.
 
+mod certificate;
 mod convergence;
 mod drift;
 mod elements;
@@ -30,6 +31,7 @@ pub fn render(report: &CampaignReport<'_>, beside: bool) -> String {
     let beside = beside.then_some(report.name.as_str());
     let body = html! {
         a.skip href="#requirements" { "To the requirements" }
+        (certificate::first_page(report))
         (header(report))
         (contents())
         (figures(report))

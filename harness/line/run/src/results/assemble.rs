@@ -18,7 +18,7 @@ use octant_report::counterfactual::in_words;
 use octant_report::{ReportData, ReportProvenance, SolutionSeries, StopLabel};
 use octant_sample::parameters::NAMES;
 use octant_scenario::file_names::FileNames;
-use octant_scenario::{CalibrationSpec, MotionSpec, Scenario, SourceSpec};
+use octant_scenario::{CalibrationSpec, HeadingCondition, MotionSpec, Scenario, SourceSpec};
 use octant_score::counterfactual::Counterfactual;
 use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
@@ -234,6 +234,8 @@ pub fn assemble_with(
         sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
         covariance: primary.table.as_ref().map(|table| Box::new(table.covariance)),
         requirement_texts: requirement_texts(scenario),
+        requirement_clauses: scenario.requirement_clauses(),
+        heading_condition: HeadingCondition::of(scenario).words(),
         summary: summary.clone(),
         axes_of_source: FileNames::of(&scenario.source).line(),
         facts: facts(scenario),

@@ -16,7 +16,7 @@ pub use drive::{Drive, TableDriver};
 pub use endpoint::{EndpointSpec, Live};
 pub use file_name::{FileName, FileNameError};
 pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
-pub use heading::{HeadingTestKind, HeadingTestSpec, PowerCycle};
+pub use heading::{HeadingCondition, HeadingTestKind, HeadingTestSpec, PowerCycle};
 pub use instrument::{
     DescriptionChoice, Instrument, InstrumentLog, KnownStamps, Messages, Speaks, UnitPulses,
 };

@@ -317,6 +317,13 @@ impl Scenario {
         Some(self.calibration_samples() + self.samples_in(navigation_s))
     }
 
+    /// Lists document and clause of the requirements by their ids, where they have one.
+    #[must_use]
+    pub fn requirement_clauses(&self) -> std::collections::BTreeMap<String, String> {
+        let clause = |r: &RequirementSpec| Some((r.check.id.clone(), r.clause.clone()?));
+        self.requirements.iter().filter_map(clause).collect()
+    }
+
     /// Lists the times without power between the run-ups of a heading test.
     #[must_use]
     pub fn power_cycles(&self) -> Vec<PowerCycle> {
