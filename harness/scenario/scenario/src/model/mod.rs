@@ -5,6 +5,7 @@ mod endpoint;
 mod file_name;
 mod fmu;
 mod heading;
+mod heading_condition;
 mod instrument;
 mod motion;
 mod port;
@@ -16,7 +17,8 @@ pub use drive::{Drive, TableDriver};
 pub use endpoint::{EndpointSpec, Live};
 pub use file_name::{FileName, FileNameError};
 pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
-pub use heading::{HeadingCondition, HeadingTestKind, HeadingTestSpec, PowerCycle};
+pub use heading::{HeadingTestKind, HeadingTestSpec, PowerCycle};
+pub use heading_condition::HeadingCondition;
 pub use instrument::{
     DescriptionChoice, Instrument, InstrumentLog, KnownStamps, Messages, Speaks, UnitPulses,
 };
