@@ -1,6 +1,6 @@
 //! Checks that a unit's answers follow its input: a constant solution, a NIS or parameters that
 //! never change, and errors of exactly zero are neither navigation nor calibration. Successive answers
-//! [fit](super::fit) each other.
+//! fit each other.
 //!
 //! Sensors have noise, so a solution computed from them changes with every sample. A finding here
 //! proves nothing against a unit; it shows that the run is no evidence.
