@@ -9,7 +9,7 @@ from pathlib import Path
 
 FOLDER = Path(sys.argv[1])
 # Of what a run is told by, these are about the line and the host, and differ.
-ELSEWHERE = {"faults", "pacing"}
+ELSEWHERE = {"faults", "pacing", "inputs"}
 wrong = []
 
 
@@ -37,6 +37,10 @@ for name in ("program-bad", "firmware", "firmware-bad"):
         expect(fault["fired"], f"{name}: {fault['id']} did nothing")
     expect((link["repeated"] > 0) == is_bad, f"{name}: asked {link['repeated']} times again")
     expect((link["damaged"] > 0) == is_bad, f"{name}: {link['damaged']} damaged frames")
+    [wire] = summary["inputs"]
+    came = link["received"] + link["damaged"] + link["unreadable"]
+    expect(wire["read"] == came, f"{name}: {wire['read']} messages in the account, {came} came")
+    expect((wire["used"] < wire["read"]) == is_bad, f"{name}: {wire['used']} messages used")
     print(f"{name}: {link['received']} messages, {link['repeated']} times asked again, {link['damaged']} damaged,"
           f" stream {summary['stream_hash'][:16]}")
 
