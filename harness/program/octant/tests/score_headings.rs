@@ -101,7 +101,7 @@ fn the_shipped_limits_on_an_output_are_those_of_its_rates_of_turn() {
     let heading = |t: f64| (350.0 + 80.0 * (0.2 * t).sin()).rem_euclid(360.0);
     let clock =
         |k: u32| format!("2026-11-20T10:{:02}:{:06.3}Z", k / 600, f64::from(k % 600) / 10.0);
-    let scenario = crate::architecture::root().join("fixtures/scenarios/heading/output.toml");
+    let scenario = crate::architecture::root().join("fixtures/scoring/heading-output.toml");
     let scored = |late_s: f64| {
         let at = |k: u32| f64::from(k) / 10.0;
         let device: String = (0..6000)

@@ -5,7 +5,7 @@
 //! those of a score once, at the end. Angles close to one that was computed in full are linear in the
 //! quaternion; the largest of them is computed in full when it is needed.
 //!
-//! A truth that moves costs more than a sample. There an answer is compared if it [strays](EveryAnswer)
+//! A truth that moves costs more than a sample. There an answer is compared if it strays
 //! from the one before, and so is every answer after it until the second scored one.
 
 use super::attitude::CaseReference;
