@@ -141,7 +141,7 @@ fn tag_blocks_and_stamps_are_times() {
     let found = read(&stamped);
     assert_eq!(seconds(&found.points), [0.125, 1.5]);
     assert!(found.points.iter().all(|point| point.attitude_doubt_s == 0.0));
-    // Of several ways the user chooses.
+    // The user chooses among several ways.
     let both: String = (0..3)
         .map(|second| zda(second) + &format!("2026-11-20T10:00:0{second}.700Z {}", hdt(1.0)))
         .collect();

@@ -52,7 +52,7 @@ pub fn q_nc([roll, pitch, heading]: [f64; 3]) -> UnitQuaternion<f64> {
     quaternion_from_matrix(&c_nc(heading, pitch, roll))
 }
 
-/// What a solution is scored against.
+/// Reference of a solution.
 #[derive(Debug)]
 pub(crate) enum Reference {
     /// A file, with what it holds.

@@ -7,6 +7,7 @@
 use super::judge::{Finding, FindingSubject, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
+use octant_account::Account;
 use octant_verdict::verdict::LimitCheck;
 use octant_verdict::{Comparison, Verdict};
 
@@ -52,6 +53,12 @@ pub fn stands(said: Verdict, comparison: Comparison, value: Option<f64>, limit: 
     }
 }
 
+/// Lists the doubts in the accounts of a summary that are no findings in it: each makes a run inconclusive.
+fn untold(summary: &Summary) -> impl Iterator<Item = String> {
+    let is_told = |doubt: &String| summary.findings.iter().any(|f| f.reason.starts_with(doubt));
+    summary.inputs.iter().flat_map(Account::doubts).filter(move |doubt| !is_told(doubt))
+}
+
 /// Contradictions in a stored summary, as texts; none: its verdict follows from its numbers.
 #[must_use]
 pub fn contradictions(summary: &Summary) -> Vec<String> {
@@ -88,6 +95,7 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
             ));
         }
     }
+    found.extend(untold(summary).map(|doubt| format!("its findings don't tell that {doubt}")));
     let derived = derive(summary).verdict;
     // Before the verdict `none` existed, a run without requirements passed.
     let was_none = summary.schema < WITH_FINDINGS
@@ -170,6 +178,9 @@ pub fn rejudge(
             });
         }
     }
+    let untold: Vec<String> = untold(&summary).collect();
+    let doubted = |doubt| Finding::of_bench(Verdict::Inconclusive, doubt);
+    summary.findings.extend(untold.into_iter().map(doubted));
     for finding in outside {
         if !summary.findings.contains(finding) {
             summary.findings.push(finding.clone());

@@ -1,8 +1,10 @@
 //! Verdicts, the form of the summary, JUnit.
 
 use crate::common::{judged, requirement, silent, summary};
+use octant_account::{Account, AccountEntry, Weight};
 use octant_score::judge::{Finding, FindingSubject, NO_REQUIREMENT, derive, judge, judge_by};
 use octant_score::junit::junit;
+use octant_score::rederive::{contradictions, rejudge};
 use octant_score::summary::{Summary, SummaryError};
 use octant_score::verdict::{MeasureError, evaluate, measure};
 use octant_score::work::Work;
@@ -179,6 +181,27 @@ fn after_the_bench_failed_nothing_is_judged_but_what_was_broken_before() {
     refused.calibration.as_mut().unwrap().refused = Some("no".to_owned());
     judge(&mut refused, &[], &late()).unwrap();
     assert_eq!(refused.verdict, open);
+}
+
+/// An account makes a run inconclusive by a finding: who takes the finding away contradicts the account.
+#[test]
+fn a_doubt_in_an_account_is_a_finding() {
+    let at_most = |measure: &str, limit| requirement(measure, Comparison::AtMost, limit);
+    let doubtful = AccountEntry::new(3, "rows without a time").weight(Weight::Doubt);
+    let account = Account::new("unit.csv", ["row", "rows"]).used(9).left_out(doubtful);
+    let [doubt] = account.doubts().try_into().unwrap();
+    let mut told = Summary { inputs: vec![account], ..worked(3600.0) };
+    let finding = Finding::of_bench(Verdict::Inconclusive, doubt.clone());
+    judge(&mut told, &[at_most(LONGITUDE, 1.0)], &[finding]).unwrap();
+    assert_eq!((told.verdict, contradictions(&told)), (Verdict::Inconclusive, vec![]));
+    let mut silent = told.clone();
+    judge(&mut silent, &[at_most(LONGITUDE, 1.0)], &[]).unwrap();
+    silent.findings.clear();
+    assert_eq!(silent.verdict, Verdict::Pass);
+    assert_eq!(contradictions(&silent), [format!("its findings don't tell that {doubt}")]);
+    let again = rejudge(&silent, &[]).unwrap().summary;
+    assert_eq!(again.verdict, Verdict::Inconclusive);
+    assert!(again.reasons.contains(&doubt), "{:?}", again.reasons);
 }
 
 #[test]

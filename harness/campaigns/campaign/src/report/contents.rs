@@ -117,7 +117,7 @@ pub struct CampaignReport<'a> {
     pub about: Requirements,
     /// Trace from requirements to their first cases and back.
     pub trace: CampaignTrace,
-    /// Who made the results.
+    /// Makers of the results.
     pub made_by: Vec<MadeBy>,
     /// The self-test of the program.
     pub selftest: Option<SelfTest>,

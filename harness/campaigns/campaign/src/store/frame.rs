@@ -57,7 +57,7 @@ pub(super) struct RecordHead {
     pub(super) kind: RecordKind,
     pub(super) case: String,
     pub(super) facts: Vec<u8>,
-    /// Who made it, JSON; empty in files of version 1.
+    /// Maker of the record, JSON; empty in files of version 1.
     pub(super) maker: Vec<u8>,
     pub(super) body_bytes: u32,
     pub(super) raw_bytes: u32,

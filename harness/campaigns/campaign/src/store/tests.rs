@@ -263,7 +263,7 @@ fn a_copied_part_counts_once() {
     assert_eq!(result.error.as_deref(), Some("now"));
 }
 
-/// What two workers store, in any order: each record is in exactly one place of the account.
+/// A record that one of two workers stores, in any order.
 #[derive(Clone, Copy, Debug)]
 enum Stored {
     Result { case: usize, which: usize },

@@ -65,7 +65,7 @@ pub(crate) fn recorder_options(
             (TELLS_ATTITUDE, tells.attitude.to_string()),
         ]
         .into_iter()
-        // Of headings alone.
+        // Headings alone have no position.
         .chain((!tells.position).then(|| (TELLS_POSITION, false.to_string())))
         .chain((!tells.tilt).then(|| (TELLS_TILT, false.to_string())))
         .map(|(key, value)| (key.to_owned(), value))

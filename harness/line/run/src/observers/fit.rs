@@ -160,7 +160,7 @@ impl AnswerFit {
         let period_ns = now_ns.saturating_sub(before_ns);
         let regular = self.period_ns == 0 || period_ns.abs_diff(self.period_ns) < period_ns / 2;
         if !regular || sample.status.contains(Status::INERTIAL_INVALID) {
-            // What the samples in between were isn't known.
+            // The samples in between aren't known.
             self.begin();
             self.period_ns = period_ns;
             return;

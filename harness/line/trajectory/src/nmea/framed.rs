@@ -83,7 +83,7 @@ impl<'a> Framed<'a> {
     }
 }
 
-/// What a TAG block says.
+/// Parameters of a TAG block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Tag<'a> {
     /// Its time, ns since 1970, UTC.

@@ -94,7 +94,7 @@ impl HeadingSaid {
     }
 }
 
-/// What a sentence says of a heading.
+/// Heading in a sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Heard {
     Heading(HeadingSaid),

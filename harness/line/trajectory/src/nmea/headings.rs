@@ -54,7 +54,7 @@ struct Source {
     time: HeadingTime,
 }
 
-/// What gives headings their times.
+/// Source of the times of headings.
 #[derive(Debug)]
 enum Clock {
     Tag(Group),

@@ -188,15 +188,7 @@ impl PlainWriter {
     /// Begins a block on a line of its own, after an empty one if there is text before it; in a cell of a table
     /// it stays on the line.
     fn block(&mut self) {
-        self.ends_block = false;
-        if self.marker == Some(self.out.len()) {
-            return;
-        }
-        if self.cells > 0 {
-            return self.space();
-        }
-        self.trim();
-        if !self.out.is_empty() {
+        if self.breaks() {
             while !self.out.ends_with("\n\n") {
                 self.out.push('\n');
             }
@@ -205,17 +197,23 @@ impl PlainWriter {
 
     /// Begins a line.
     fn line(&mut self) {
-        self.ends_block = false;
-        if self.marker == Some(self.out.len()) {
-            return;
-        }
-        if self.cells > 0 {
-            return self.space();
-        }
-        self.trim();
-        if !self.out.is_empty() && !self.out.ends_with('\n') {
+        if self.breaks() && !self.out.ends_with('\n') {
             self.out.push('\n');
         }
+    }
+
+    /// Ends what stands on the line; false where none may begin: there is no text before it, or it is in a cell.
+    fn breaks(&mut self) -> bool {
+        self.ends_block = false;
+        if self.marker == Some(self.out.len()) {
+            return false;
+        }
+        if self.cells > 0 {
+            self.space();
+            return false;
+        }
+        self.trim();
+        !self.out.is_empty()
     }
 
     fn trim(&mut self) {
