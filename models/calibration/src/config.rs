@@ -5,7 +5,7 @@ mod sigma_limits;
 #[cfg(feature = "state")]
 mod stored;
 
-pub use further::{AngleMeasurements, Further, FurtherUse, TemperatureErrors};
+pub use further::{AngleMeasurements, CaseRest, Further, FurtherUse, TemperatureErrors};
 pub use octant_positions::schedule::TurntableRates;
 pub use sigma_limits::{SigmaLimits, UncertainQuantity};
 

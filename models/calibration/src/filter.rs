@@ -17,8 +17,8 @@ mod sub_step;
 mod sway;
 
 pub use further::{
-    ANGLE_GATE_NIS, AngleResult, AngleRows, AngleTally, ExpectedNis, FURTHER_ROW, FurtherEffects,
-    FurtherRow, angle_rows,
+    ANGLE_GATE_NIS, AngleResult, AngleRows, AngleTally, CaseTurn, ExpectedNis, FURTHER_ROW,
+    FurtherEffects, FurtherRow, angle_rows,
 };
 pub use measurement::MeasurementResult;
 pub use noise::{add_bias_walk, add_process_noise};

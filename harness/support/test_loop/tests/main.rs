@@ -19,6 +19,7 @@ mod further_states;
 mod gimbal_angles;
 mod presets;
 mod quiet_instruments;
+mod rest;
 mod sigma_limits;
 mod smoothing;
 mod state_core;

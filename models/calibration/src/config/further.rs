@@ -46,6 +46,27 @@ pub struct AngleMeasurements {
     pub groups: [FurtherUse; 3],
 }
 
+/// Case of a base at rest: where gimbals rest, the body doesn't turn, but for what the case itself does.
+///
+/// At a stop the attitude is a constant of which nothing else is known. A move of one gimbal changes it about that axis
+/// alone, by its angle within [`Self::ANGLE_SIGMA_RAD`], so that encoders are trusted for no more than that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub struct CaseRest {
+    /// Random walk of the case about each axis, rad/√s: a floor that settles, a quay. 0: none.
+    pub wander_rad_per_sqrt_s: f64,
+    /// Turn about any axis since the first measurement, beyond what its uncertainty explains, that contradicts a case at
+    /// rest, rad.
+    pub range_rad: f64,
+    /// White noise of the case's attitude about each axis, 1σ, rad: people, machines.
+    pub jitter_rad: f64,
+}
+
+impl CaseRest {
+    /// Uncertainty of a gimbal's angle after each move, 1σ, rad: that of an encoder of which nothing is known.
+    pub const ANGLE_SIGMA_RAD: f64 = core::f64::consts::PI / 180.0;
+}
+
 /// Errors that follow the temperature of the instrument linearly. The core has to be told the temperature
 /// ([`Core::feel`](crate::Core::feel)).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,9 +100,31 @@ pub struct Further {
     /// with them: see `stored`.
     #[cfg_attr(feature = "state", serde(skip))]
     pub angles: Option<AngleMeasurements>,
+    /// Case that doesn't turn; `None`: its attitude tells the filter nothing, or is a constant where angles are
+    /// measurements. A configuration is stored with it: see `stored`.
+    #[cfg_attr(feature = "state", serde(skip))]
+    pub rest: Option<CaseRest>,
 }
 
 impl Further {
+    /// Measurement of the attitude at rest by the angles of the gimbals; `None` where there is none.
+    #[must_use]
+    pub fn attitude_at_rest(&self) -> Option<AngleMeasurements> {
+        self.angles.or_else(|| {
+            self.rest.map(|rest| AngleMeasurements {
+                sigma_rad: rest.jitter_rad,
+                curve_sigma_rad: CaseRest::ANGLE_SIGMA_RAD,
+                groups: [FurtherUse::Off; 3],
+            })
+        })
+    }
+
+    /// Returns whether the filter has a border: further states, or the attitude of a case at rest.
+    #[must_use]
+    pub fn has_border(&self) -> bool {
+        self.rest.is_some() || self.has_states()
+    }
+
     /// Treatment of a group.
     #[must_use]
     pub fn of(&self, group: FurtherGroup) -> FurtherUse {

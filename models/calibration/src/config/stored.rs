@@ -2,7 +2,7 @@
 //! were any, so that the bytes of earlier programs remain readable and the same.
 
 use super::{
-    AngleMeasurements, ExternalTurntable, Further, Kalman, LeastSquares, SigmaLimits,
+    AngleMeasurements, CaseRest, ExternalTurntable, Further, Kalman, LeastSquares, SigmaLimits,
     TemperatureErrors,
 };
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -24,11 +24,24 @@ enum Estimator {
         Option<TemperatureErrors>,
         Option<AngleMeasurements>,
     ),
+    KalmanRest(
+        Kalman,
+        SigmaLimits,
+        Further,
+        Option<TemperatureErrors>,
+        Option<AngleMeasurements>,
+        CaseRest,
+    ),
 }
 
 impl Serialize for super::Estimator {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let stored = match *self {
+            Self::Kalman(kalman) if let Some(rest) = kalman.further.rest => {
+                let (limits, further) = (kalman.sigma_limits, kalman.further);
+                let (temperature, angles) = (further.temperature, further.angles);
+                Estimator::KalmanRest(kalman, limits, further, temperature, angles, rest)
+            }
             Self::Kalman(kalman) if kalman.sigma_limits != SigmaLimits::default() => {
                 let (limits, further) = (kalman.sigma_limits, kalman.further);
                 let (temperature, angles) = (further.temperature, further.angles);
@@ -69,6 +82,10 @@ impl<'de> Deserialize<'de> for super::Estimator {
             }
             Estimator::KalmanLimited(kalman, sigma_limits, further, temperature, angles) => {
                 let further = Further { temperature, angles, ..further };
+                Self::Kalman(Kalman { further, sigma_limits, ..kalman })
+            }
+            Estimator::KalmanRest(kalman, sigma_limits, further, temperature, angles, rest) => {
+                let further = Further { temperature, angles, rest: Some(rest), ..further };
                 Self::Kalman(Kalman { further, sigma_limits, ..kalman })
             }
             Estimator::LeastSquares(settings) => Self::LeastSquares(settings),

@@ -9,6 +9,7 @@
 
 mod angles;
 mod border;
+mod case;
 mod columns;
 mod expected;
 mod gimbals;
@@ -29,6 +30,7 @@ use crate::further::{
 };
 pub use angles::{ANGLE_GATE_NIS, AngleResult, AngleRows, angle_rows};
 use border::{BORDER_COUNT, Border, CASE, Process, places};
+pub use case::CaseTurn;
 use columns::UNHEATED_ROW;
 pub use columns::{FURTHER_ROW, FurtherEffects, FurtherRow};
 pub use expected::ExpectedNis;
@@ -67,10 +69,12 @@ impl FurtherStates {
     /// Makes the further states of a filter with their prior; `None` if all groups are off.
     pub(super) fn new(kalman: &Kalman, checkpoints: bool) -> Option<Self> {
         let further = &kalman.further;
-        if !further.has_states() {
+        if !further.has_border() {
             return None;
         }
-        let angles = further.angles.as_ref().map(GimbalAngleMeasurement::new);
+        let angles = further
+            .attitude_at_rest()
+            .map(|angles| GimbalAngleMeasurement::new(&angles, further.rest));
         let heated = further.follows_temperature();
         let mut border = Border::new(match (&angles, heated) {
             (Some(_), _) => BORDER_COUNT,
@@ -213,6 +217,15 @@ impl FurtherStates {
         for process in self.processes.iter().flatten() {
             self.border.wander(process, elapsed_s, &columns, errors);
         }
+        self.turn_case(elapsed_s);
+    }
+
+    /// Lets the case turn for a time, as far as it may.
+    fn turn_case(&mut self, elapsed_s: f64) {
+        let variance = self.angles.as_ref().map_or(0.0, |angles| angles.wander_rad2_per_s);
+        if variance > 0.0 {
+            (CASE..CASE + 3).for_each(|k| self.border.own[k][k] += variance * elapsed_s);
+        }
     }
 
     /// Uses one axis of a measurement: state `s` of the 39 with variance `r`, before that updates
@@ -304,6 +317,7 @@ impl FurtherStates {
         for process in self.processes.iter().flatten() {
             self.border.wander(process, since_s, &[[0.0; FURTHER_ROW]; MOVING], errors);
         }
+        self.turn_case(since_s);
         // The stop may be another one.
         self.border.reference.at = None;
     }
@@ -394,6 +408,9 @@ impl octant_state::State for FurtherStates {
         to.part("checkpoints", checkpoints);
         if let Some(angles) = angles {
             to.value("angles", &angles.tally);
+            if let Some(travel) = &angles.travel {
+                to.value("case", travel);
+            }
         }
         if let Some(spread) = spread {
             to.part("nis spread", spread);
@@ -424,6 +441,9 @@ impl octant_state::State for FurtherStates {
             angles.tally = from.value("angles")?;
             octant_state::check_count("angles.used", angles.tally.used)?;
             octant_state::check_count("angles.rejected", angles.tally.rejected)?;
+            if let Some(travel) = &mut angles.travel {
+                *travel = from.value("case")?;
+            }
         }
         if let Some(spread) = &mut self.spread {
             from.part("nis spread", spread)?;

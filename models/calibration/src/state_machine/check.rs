@@ -1,8 +1,8 @@
 //! Checks of a configuration before a core is made from it.
 
 use crate::config::{
-    AidingMode, Alignment, AngleMeasurements, Base, BaseMotion, CoreConfig, Estimator, Further,
-    SwayNoise,
+    AidingMode, Alignment, AngleMeasurements, Base, BaseMotion, CaseRest, CoreConfig, Estimator,
+    Further, SwayNoise,
 };
 use crate::further::FurtherGroup;
 
@@ -143,7 +143,14 @@ fn check_further(further: &Further) -> Result<(), CoreConfigError> {
             positive("sigma of the encoders' curve", *curve_sigma_rad)?;
         }
     }
-    if further.follows_temperature() && further.angles.is_some() {
+    if let Some(CaseRest { wander_rad_per_sqrt_s, range_rad, jitter_rad }) = further.rest {
+        positive("jitter of the case at rest", jitter_rad)?;
+        positive("range of the case at rest", range_rad)?;
+        if wander_rad_per_sqrt_s != 0.0 {
+            positive("wander of the case at rest", wander_rad_per_sqrt_s)?;
+        }
+    }
+    if further.follows_temperature() && further.attitude_at_rest().is_some() {
         return Err(CoreConfigError::TemperatureWithAngles);
     }
     if let Some(found_c) = further.temperature.and_then(|temperature| temperature.reference_c)
@@ -243,11 +250,11 @@ pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
             | AidingMode::Position { sigma_m: sigma }) = kalman.aiding;
             positive("aiding sigma", sigma)?;
             check_further(&kalman.further)?;
-            if kalman.further.angles.is_some() && screening.base != Base::Still {
+            if kalman.further.attitude_at_rest().is_some() && screening.base != Base::Still {
                 return Err(CoreConfigError::AnglesOnMovingBase);
             }
             if kalman.sway == SwayNoise::Coloured {
-                if kalman.further.has_states() {
+                if kalman.further.has_border() {
                     return Err(CoreConfigError::SwayWithFurther);
                 }
                 if !matches!(kalman.aiding, AidingMode::Position { .. }) {

@@ -3,7 +3,7 @@
 use crate::config::{Kalman, SigmaLimits, UncertainQuantity};
 use crate::covariance::PHI;
 use crate::drift::Largest;
-use crate::filter::{AngleTally, CalibrationFilter};
+use crate::filter::{AngleTally, CalibrationFilter, CaseTurn};
 use crate::table::Quality;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 
@@ -148,6 +148,9 @@ pub enum CalibrationRefusal {
     /// The average of the last standstill doesn't fit a base at rest at the site.
     #[error("{0}")]
     Standstill(#[from] crate::standstill::StandstillRefusal),
+    /// The case is said to rest, and turned: what was learned from its rest can't be told apart.
+    #[error("the case is said to rest and turned: {0}")]
+    CaseTurned(CaseTurn),
 }
 
 /// Quality of a filter's calibration so far.
@@ -216,7 +219,12 @@ pub(super) fn judge(
         let &Largest { sigmas, parameter, between_s } = drift.largest();
         return Err(CalibrationRefusal::Drift { parameter, sigmas, between_s });
     }
-    if let Some(tally) = filter.angle_tally() {
+    if let Some(turn) = filter.case_turn(gimbal_slips) {
+        return Err(CalibrationRefusal::CaseTurned(turn));
+    }
+    if let Some(tally) = filter.angle_tally()
+        && kalman.further.angles.is_some()
+    {
         judge_angles(tally, gimbal_slips, kalman.refuse_above_mean_nis)?;
     }
     Ok(quality)

@@ -40,7 +40,7 @@ impl Core {
         };
         let explains_ticks = self.explains_ticks();
         let after_move = self.has_moved_within(explains_ticks);
-        let resting = kalman.further.angles.is_some()
+        let resting = kalman.further.attitude_at_rest().is_some()
             && !self.gimbals_may_move()
             && !sample.status.contains(Status::GIMBAL_INVALID);
         let period_ticks = kalman.aiding_period_ns / self.config.sample_period_ns;
@@ -74,6 +74,7 @@ impl Core {
             if let (Some((angles, turned_rad)), Some(measured)) = (angles, &mut measured) {
                 measured.turned_rad += turned_rad;
                 if angles.rejected {
+                    // A case that turned looks the same.
                     *health |= Health::GIMBAL_SLIPPED;
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::by_case::{G_DEPENDENTS, NOISES, PRIOR_POSITIONS, REFERENCE_CASES, SIGMAS};
 use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
-use super::further::FurtherKeys;
+use super::further::{CaseRestKeys, FurtherKeys};
 use super::table::{
     At, Keys, Of, Value, boolean, choice, integer, keys, number, si, si_array, si_list, table,
     tables, text, time, within,
@@ -302,6 +302,9 @@ keys! {
             = si(&[UnitDimension::VELOCITY, UnitDimension::LENGTH], Bounds::NotNegative),
             by_case(NOISES),
             "Standard deviation of the white noise that the reference really has.";
+        rest: At<Option<CaseRestKeys>> = table::<CaseRestKeys>(),
+            absent("the velocity alone is known to be zero"),
+            "Case that doesn't turn: at a stop neither do the gimbals, and a move turns the body about one axis alone. For motion.kind = \"static\".";
     }
 }
 

@@ -56,6 +56,18 @@ keys! {
 }
 
 keys! {
+    /// `[procedure.calibration.aiding.rest]`.
+    pub(crate) struct CaseRestKeys {
+        wander: f64 = si(&[UnitDimension::ANGLE_RANDOM_WALK], Bounds::NotNegative), "0.2 arcsec/sqrt(h)",
+            "Random walk of the case about each axis: a floor that settles, a pillar in the sun, a quay.";
+        range: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), "10 arcsec",
+            "Turn of the case since the start, beyond what its uncertainty explains, that contradicts a case at rest.";
+        jitter: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), "0.5 arcsec",
+            "White noise of the case's attitude about each axis, one standard deviation: people, machines.";
+    }
+}
+
+keys! {
     /// `[procedure.calibration.further]`.
     pub(crate) struct FurtherKeys {
         accel_lever: Option<LeverUse> = table::<LeverUse>(), absent("off"),

@@ -43,10 +43,10 @@ pub(crate) use faults::{
 };
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
 pub(crate) use further::{
-    AccelPerKelvinUse, AccelUse, AngleUse, DrawnAccelerations, DrawnAccelsPerKelvin, DrawnAngles,
-    DrawnGyrosPerKelvin, DrawnLengths, DrawnQuadratics, DrawnRatios, DrawnScalesPerKelvin,
-    FurtherKeys, GimbalAnglesKeys, GyroPerKelvinUse, GyroUse, LeverUse, QuadraticUse, RatioUse,
-    ScalePerKelvinUse,
+    AccelPerKelvinUse, AccelUse, AngleUse, CaseRestKeys, DrawnAccelerations, DrawnAccelsPerKelvin,
+    DrawnAngles, DrawnGyrosPerKelvin, DrawnLengths, DrawnQuadratics, DrawnRatios,
+    DrawnScalesPerKelvin, FurtherKeys, GimbalAnglesKeys, GyroPerKelvinUse, GyroUse, LeverUse,
+    QuadraticUse, RatioUse, ScalePerKelvinUse,
 };
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use key_path::{key, keys_of};

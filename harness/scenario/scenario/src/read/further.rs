@@ -2,7 +2,7 @@
 
 use crate::error::Problem;
 use crate::keys::{
-    AccelPerKelvinUse, AccelUse, AngleUse, At, CalibrationKeys, DrawnAccelerations,
+    AccelPerKelvinUse, AccelUse, AngleUse, At, CalibrationKeys, CaseRestKeys, DrawnAccelerations,
     DrawnAccelsPerKelvin, DrawnAngles, DrawnGyrosPerKelvin, DrawnLengths, DrawnQuadratics,
     DrawnRatios, DrawnScalesPerKelvin, EstimatorName, FurtherKeys, GimbalAnglesKeys,
     GyroPerKelvinUse, GyroUse, LeverUse, QuadraticUse, RatioUse, ScalePerKelvinUse, ScenarioKeys,
@@ -17,9 +17,17 @@ pub(super) fn further(
     keys: &CalibrationKeys,
     motion: &MotionSpec,
 ) -> Result<core::Further, Problem> {
-    let Some(found) = &*keys.further else { return Ok(core::Further::default()) };
-    let further = of(found);
+    let further = core::Further {
+        rest: keys.aiding.rest.as_ref().map(rest),
+        ..keys.further.as_ref().map_or_else(core::Further::default, of)
+    };
     if further == core::Further::default() {
+        return Ok(further);
+    }
+    if further.rest.is_some() {
+        check_rest(keys, motion, &further)?;
+    }
+    if keys.further.is_none() {
         return Ok(further);
     }
     if !matches!(*keys.estimator, EstimatorName::Kalman) {
@@ -45,6 +53,41 @@ pub(super) fn further(
         ));
     }
     Ok(further)
+}
+
+/// Refuses a case at rest where it isn't one, or where nothing measures it.
+fn check_rest(
+    keys: &CalibrationKeys,
+    motion: &MotionSpec,
+    further: &core::Further,
+) -> Result<(), Problem> {
+    let found = &keys.aiding.rest;
+    if !matches!(*keys.estimator, EstimatorName::Kalman) {
+        return Err(found.problem(format!(
+            "found with estimator = {:?}, expected \"kalman\": least squares takes every case for one at rest",
+            keys.estimator.text
+        )));
+    }
+    if matches!(motion, MotionSpec::Dockside(_)) {
+        return Err(found.problem(
+            "found with motion.kind = \"dockside\", expected \"static\": a case that moves isn't at rest",
+        ));
+    }
+    if further.follows_temperature() {
+        return Err(found.problem(
+            "found with errors that follow the temperature, expected one of the two: the filter has room for one",
+        ));
+    }
+    Ok(())
+}
+
+/// Case at rest.
+fn rest(keys: &CaseRestKeys) -> core::CaseRest {
+    core::CaseRest {
+        wander_rad_per_sqrt_s: keys.wander,
+        range_rad: keys.range,
+        jitter_rad: keys.jitter,
+    }
 }
 
 fn of(keys: &FurtherKeys) -> core::Further {
@@ -101,6 +144,7 @@ fn of(keys: &FurtherKeys) -> core::Further {
         gyro_rate_random_walk: keys.gyro_rate_random_walk,
         temperature: (!is_off).then_some(temperature),
         angles: keys.gimbal_angles.as_ref().map(angles),
+        rest: None,
     }
 }
 
@@ -200,8 +244,8 @@ pub(super) fn check_endpoint(uri: &At<String>, scenario: &Scenario) -> Result<()
         return Ok(());
     }
     Err(uri.problem(format!(
-        "found {:?} with procedure.calibration.further, expected \"in-process\": neither a wire nor an FMU has a \
-         place for these states",
+        "found {:?} with procedure.calibration.further or aiding.rest, expected \"in-process\": neither a wire nor an FMU \
+         has a place for these states",
         uri.text
     )))
 }

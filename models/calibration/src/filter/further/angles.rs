@@ -218,7 +218,7 @@ impl FurtherStates {
         let angles = self.angles.as_ref().filter(|angles| !angles.tally.slipped)?;
         let (r, curve_sigma) = (angles.variance_rad2, angles.curve_sigma_rad);
         let angles_rad = [gimbal.azimuth_rad(), gimbal.roll_rad()];
-        self.border.stop_at(angles_rad, curve_sigma);
+        let moved = self.border.stop_at(angles_rad, curve_sigma);
         let [w, i, j, k] = strapdown.navigation().q_nb;
         let q_nb = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
         let q_nc = if let Some(q_nc) = self.border.reference.q_nc {
@@ -229,7 +229,8 @@ impl FurtherStates {
             (0..3).for_each(|axis| self.border.renew(CASE + axis, CASE_SIGMA_RAD));
             *self.border.reference.q_nc.insert(exp(&turn))
         };
-        let (z, rows) = residual(&q_nb, &q_nc, angles_rad, &self.border.value);
+        let (z, of_reference) = residual(&q_nb, &q_nc, angles_rad, &self.border.value);
+        let rows = self.rows_of_stop(&q_nc, angles_rad, moved).unwrap_or(of_reference);
         let of_errors = rows_of_errors(model, strapdown.earth());
 
         let with = |axis: usize, errors: &Covariance, border: &Border| {
@@ -277,7 +278,26 @@ impl FurtherStates {
             *value += moved;
         }
         self.fold_case();
+        self.follow_case();
         Some(AngleResult { nis, rejected: false })
+    }
+
+    /// Rows of the states at a stop of a case at rest; `None` where no case is said to rest.
+    ///
+    /// Within a stop they are those of its first reference. An angle with 1° of uncertainty and the case's heading are
+    /// seen as one sum there. Were the axes turned with each correction of the tilt, 1″ a time, the filter would take
+    /// their difference for observed (as in simultaneous localization and mapping: Huang, Mourikis and Roumeliotis,
+    /// "Observability-based rules for designing consistent EKF SLAM estimators", 2010).
+    fn rows_of_stop(
+        &mut self,
+        q_nc: &UnitQuaternion<f64>,
+        angles_rad: [f64; 2],
+        moved: bool,
+    ) -> Option<AngleRows> {
+        let angles = self.angles.as_mut()?;
+        let axes = angles.travel.as_mut()?.axes(q_nc, moved);
+        let value = Estimates::of(&self.border.value);
+        Some(predict(axes.to_rotation_matrix().matrix(), angles_rad, &value).1)
     }
 
     /// Subtracts the square of a normalized gain from the border. Two states that are considered keep their covariance
@@ -301,14 +321,18 @@ impl FurtherStates {
 impl Border {
     /// Tells the border at which angles (azimuth, roll; rad) the gimbals rest. After a move of a gimbal the rest of its
     /// encoder's error curve is another one.
-    pub(super) fn stop_at(&mut self, angles_rad: [f64; 2], curve_sigma_rad: f64) {
+    /// Returns whether this stop is another one.
+    pub(super) fn stop_at(&mut self, angles_rad: [f64; 2], curve_sigma_rad: f64) -> bool {
         let GimbalReference { at, .. } = self.reference;
+        let mut moved = false;
         for axis in 0..2 {
             let same = at.is_some_and(|at| (at[axis] - angles_rad[axis]).abs() < ANOTHER_STOP_RAD);
             if !same {
                 self.renew(CURVE + axis, curve_sigma_rad);
+                moved = true;
             }
         }
         self.reference.at = Some(angles_rad);
+        moved
     }
 }

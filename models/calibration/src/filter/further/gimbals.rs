@@ -1,6 +1,7 @@
 //! Gimbal angles as measurements: their settings, their counts and their reference.
 
-use crate::config::AngleMeasurements;
+use super::case::CaseTravel;
+use crate::config::{AngleMeasurements, CaseRest};
 use nalgebra::UnitQuaternion;
 
 /// Counts of the angles as measurements.
@@ -24,15 +25,26 @@ pub struct AngleTally {
 pub(super) struct GimbalAngleMeasurement {
     pub(super) variance_rad2: f64,
     pub(super) curve_sigma_rad: f64,
+    /// Growth of the variance of the case's attitude, rad²/s; 0: a constant.
+    pub(super) wander_rad2_per_s: f64,
+    /// Turn of the case that contradicts a case at rest, rad.
+    pub(super) range_rad: f64,
     pub(super) tally: AngleTally,
+    /// `None` where no case is said to rest.
+    pub(super) travel: Option<CaseTravel>,
 }
 
 impl GimbalAngleMeasurement {
-    pub(super) fn new(angles: &AngleMeasurements) -> Self {
+    /// Makes the measurement; `rest`: the case is known to turn by no more than that.
+    pub(super) fn new(angles: &AngleMeasurements, rest: Option<CaseRest>) -> Self {
+        let wander = rest.map_or(0.0, |rest| rest.wander_rad_per_sqrt_s);
         Self {
             variance_rad2: angles.sigma_rad * angles.sigma_rad,
             curve_sigma_rad: angles.curve_sigma_rad,
+            wander_rad2_per_s: wander * wander,
+            range_rad: rest.map_or(f64::INFINITY, |rest| rest.range_rad),
             tally: AngleTally::default(),
+            travel: rest.map(|_| CaseTravel::default()),
         }
     }
 }
