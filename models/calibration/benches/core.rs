@@ -28,6 +28,7 @@ fn all_further() -> Further {
         gyro_rate_random_walk: 1e-12,
         temperature: None,
         angles: None,
+        rest: None,
     }
 }
 

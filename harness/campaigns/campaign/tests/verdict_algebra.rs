@@ -146,6 +146,7 @@ impl Parts {
             further: BTreeMap::new(),
             nis_mean: None,
             nis_expected: None,
+            rest: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
             refused: refused.then(|| "so it was".to_owned()),

@@ -1,5 +1,6 @@
 //! The core in this process.
 
+use super::rest::{RestUse, WithoutRest, goes_on};
 use super::{Conclusion, Endpoint, EndpointError};
 use octant_calibration::config::{Estimator, Further, FurtherUse, NavigationPlan};
 use octant_calibration::state_machine::CoreConfigError;
@@ -18,6 +19,9 @@ pub struct InProcess {
     feels: bool,
     /// Configuration with which the core starts after each restart.
     config: Box<CoreConfig>,
+    /// The core without the rest of its case, until the end of the calibration.
+    without_rest: Option<Box<WithoutRest>>,
+    rest: Option<RestUse>,
 }
 
 impl InProcess {
@@ -31,6 +35,8 @@ impl InProcess {
             revision: 0,
             feels: further_of(config).is_some_and(Further::follows_temperature),
             config: Box::new(config.clone()),
+            without_rest: WithoutRest::new(config)?,
+            rest: None,
         })
     }
 
@@ -49,8 +55,26 @@ impl InProcess {
         navigation: Option<NavigationPlan>,
     ) -> Result<(), CoreConfigError> {
         self.core.plan_navigation(navigation.clone())?;
+        if let Some(other) = &mut self.without_rest {
+            other.core_mut().plan_navigation(navigation.clone())?;
+        }
         self.config.navigation = navigation;
         Ok(())
+    }
+
+    /// Lets the core without rest follow, and compares the two where the calibration has ended.
+    #[inline(never)]
+    fn follow(&mut self, epoch: Option<&Epoch>, output: &mut Output) {
+        let Some(mut other) = self.without_rest.take() else { return };
+        match epoch {
+            Some(epoch) => other.step(epoch),
+            None => other.end_of_stream(),
+        }
+        if goes_on(output.mode) {
+            self.without_rest = Some(other);
+        } else {
+            self.rest = Some(other.conclude(&mut self.core, output));
+        }
     }
 
     /// Returns whether the core estimates further states.
@@ -85,11 +109,17 @@ impl Endpoint for InProcess {
 
     fn feel(&mut self, temperature_c: f64) {
         self.core.feel(temperature_c);
+        if let Some(other) = &mut self.without_rest {
+            other.core_mut().feel(temperature_c);
+        }
     }
 
     #[inline]
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
         self.core.step_into(&epoch.sample, epoch.aiding.as_ref(), output);
+        if self.without_rest.is_some() {
+            self.follow(Some(epoch), output);
+        }
         self.revision = output.parameters_revision;
         Ok(())
     }
@@ -103,10 +133,13 @@ impl Endpoint for InProcess {
         if let Some(offset) = offset {
             config.initial_parameters = super::sum(&config.initial_parameters, offset);
         }
-        self.core = Core::new(&config).map_err(|error| EndpointError::Restart {
+        let refused = |error: CoreConfigError| EndpointError::Restart {
             uri: "in-process".to_owned(),
             reason: error.to_string(),
-        })?;
+        };
+        self.core = Core::new(&config).map_err(refused)?;
+        self.without_rest = WithoutRest::new(&config).map_err(refused)?;
+        self.rest = None;
         self.revision = 0;
         Ok(())
     }
@@ -129,7 +162,8 @@ impl Endpoint for InProcess {
 
     /// Ends the stream: see [`Core::end_of_stream`].
     fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
-        let output = self.core.end_of_stream();
+        let mut output = self.core.end_of_stream();
+        self.follow(None, &mut output);
         self.revision = output.parameters_revision;
         Ok(Some(output))
     }
@@ -146,6 +180,7 @@ impl Endpoint for InProcess {
             table: self.core.table().filter(|_| !self.has_further_estimates()).cloned(),
             solution: self.core.concluded().copied(),
             further: self.core.further().copied(),
+            rest: self.rest.clone(),
             events: Vec::new(),
         }
     }

@@ -7,6 +7,7 @@ mod in_process;
 mod live;
 mod open;
 mod powered;
+mod rest;
 mod served;
 mod solution;
 
@@ -15,6 +16,7 @@ pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
 pub use live::{LiveEndpoint, configuration};
 pub use open::{check_live, open, open_with};
+pub use rest::RestUse;
 pub use served::ServedCore;
 pub use solution::SolutionEndpoint;
 
@@ -226,6 +228,8 @@ pub struct Conclusion {
     pub solution: Option<SolutionCovariance>,
     /// Further states of the filter, where it has any and no wire is between.
     pub further: Option<FurtherEstimates>,
+    /// Use of a case that is said to rest, where one is.
+    pub rest: Option<RestUse>,
     /// Events of the connection to be recorded: frames that a wire carried and lost.
     pub events: Vec<Event>,
 }

@@ -119,6 +119,7 @@ impl Bench {
                 further: BTreeMap::new(),
                 nis_mean: Some(3.0),
                 nis_expected: None,
+                rest: None,
                 nees: BTreeMap::new(),
                 worst_normalized_error: None,
                 refused: None,

@@ -34,6 +34,10 @@ pub(super) fn calibration(data: &ReportData) -> Markup {
                 (number::significant(floor, 2)) " deg/h/g."
             }
         }
+        @if let Some(rest) = &calibration.rest {
+            @let sentence = rest.sentence();
+            p.hint { "With respect to the case at rest: " (sentence) "." }
+        }
         @if let Some(axes) = &data.axes_of_source {
             p.hint { "Axes of the source: " (axes) "." }
         }

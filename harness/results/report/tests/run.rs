@@ -93,6 +93,7 @@ fn calibration(positions: &str, with_g: bool) -> (CalibrationScore, Parameters) 
         duration_h: 24.0,
         nis_mean: Some(3.004),
         nis_expected: None,
+        rest: None,
         nees: parameters::nees(&parameters, &std::collections::BTreeMap::new()),
         worst_normalized_error: parameters::worst_normalized_error(&parameters, &[]),
         parameters,

@@ -42,6 +42,9 @@ pub struct CalibrationScore {
     /// calibration.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refusal_explained: Vec<String>,
+    /// Use of a case that is said to rest; left out where none is, and with a core that isn't called directly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest: Option<CaseRestScore>,
     /// Counts of the core's reports.
     pub health: HealthCounts,
     /// Rows of the filter's σ over the calibration: hours of the run; heading, pitch and roll of the
@@ -57,6 +60,41 @@ impl CalibrationScore {
     pub fn nis_expected_words(&self) -> String {
         self.nis_expected
             .map_or_else(|| "3".to_owned(), |[low, high]| format!("{low:.2} to {high:.2}"))
+    }
+}
+
+/// Use of a case that is said to rest (`procedure.calibration.aiding.rest`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CaseRestScore {
+    /// True if the parameters rest on it; else they are those of the same calibration without it.
+    pub used: bool,
+    /// Contradiction between the rest and the measurements; null if there is none.
+    pub contradicted: Option<String>,
+    /// Largest difference of a parameter with and without it, in standard deviations of the difference; null where one
+    /// of the two calibrations was refused.
+    pub largest_difference_sigmas: Option<f64>,
+    /// Name of that parameter.
+    pub largest_difference_of: Option<String>,
+}
+
+impl CaseRestScore {
+    /// One sentence on it.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let compared = match (self.largest_difference_sigmas, &self.largest_difference_of) {
+            (Some(sigmas), Some(of)) => {
+                format!(
+                    ": without it no parameter differs by more than {sigmas:.1} σ of the difference ({of})"
+                )
+            }
+            _ => String::new(),
+        };
+        match &self.contradicted {
+            None => format!("the rest of the case is used{compared}"),
+            Some(why) => format!(
+                "the rest of the case is NOT used, the case turned: {why}; all parameters are those of the calibration without it"
+            ),
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 
 pub use super::alignment::{AlignmentReference, AlignmentResult, PointScore, SolutionScore};
 pub use super::allan::{AllanDeviation, AxisAllan, NoiseTermScore, SensorAllan};
-pub use super::calibration::{CalibrationScore, HealthCounts, ParameterScore};
+pub use super::calibration::{CalibrationScore, CaseRestScore, HealthCounts, ParameterScore};
 pub use super::navigation::{
     ErrorScore, GapScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
 };

@@ -31,6 +31,7 @@ fn calibration(estimate: f64, refused: Option<&str>) -> CalibrationScore {
         further: BTreeMap::new(),
         nis_mean: None,
         nis_expected: None,
+        rest: None,
         nees: BTreeMap::new(),
         worst_normalized_error: None,
         refused: refused.map(str::to_owned),

@@ -409,6 +409,7 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
                 "  calibration {} h: NIS {nis}{worst}",
                 number::plain(calibration.duration_h, 4)
             ));
+            calibration.rest.iter().for_each(|rest| line(format!("  {}", rest.sentence())));
             if let Some(reason) = &calibration.refused {
                 line(format!("  refused: {reason}"));
                 calibration.refusal_explained.iter().for_each(|text| line(format!("    {text}")));

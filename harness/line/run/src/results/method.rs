@@ -15,7 +15,7 @@ use octant_sample::{Mode, Parameters};
 use octant_scenario::{CalibrationSpec, Method, Scenario};
 use octant_score::parameters::{nees, score, score_further, worst_normalized_error};
 use octant_score::summary::{
-    AlignmentResult, CalibrationScore, HeightChannel, NavigationScore, SolutionScore,
+    AlignmentResult, CalibrationScore, CaseRestScore, HeightChannel, NavigationScore, SolutionScore,
 };
 use std::sync::Arc;
 
@@ -119,6 +119,7 @@ impl MethodRun {
                 further,
                 refused: refused.clone(),
                 refusal_explained: Vec::new(),
+                rest: conclusion.rest.as_ref().map(rest_score),
                 health,
                 sigma_hours: (observers.charts.filtered.as_mut())
                     .map_or_else(Vec::new, FilteredSeries::take_sigma),
@@ -173,5 +174,15 @@ fn estimator_name(estimator: &Estimator) -> &'static str {
         Estimator::Kalman(_) => "kalman",
         Estimator::LeastSquares(_) => "least-squares",
         Estimator::ExternalTurntable(_) => "external-turntable",
+    }
+}
+
+/// Use of a case that is said to rest, as it is stored.
+fn rest_score(rest: &octant_endpoint::RestUse) -> CaseRestScore {
+    CaseRestScore {
+        used: rest.contradicted.is_none(),
+        contradicted: rest.contradicted.clone(),
+        largest_difference_sigmas: rest.largest_difference.map(|(sigmas, _)| sigmas),
+        largest_difference_of: rest.largest_difference.map(|(_, name)| name.to_owned()),
     }
 }

@@ -43,6 +43,7 @@ pub(crate) fn summary() -> Summary {
             further: BTreeMap::new(),
             nis_mean: Some(3.01),
             nis_expected: None,
+            rest: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
             refused: None,

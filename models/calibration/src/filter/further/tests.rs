@@ -77,6 +77,7 @@ pub(super) fn all_on(sigma: f64) -> Further {
             ..temperature()
         }),
         angles: None,
+        rest: None,
     }
 }
 
