@@ -1,8 +1,8 @@
 //! Core beside one that uses the rest of its case, and doesn't: it takes over where the case turned.
 //!
 //! What was learned from a rest that wasn't one can't be told apart afterwards. A second core takes the same samples without
-//! it, for as long as the calibration lasts. At its end the first one gives way if its own tests found a turn, or if the
-//! two differ by more than the information of a rest explains: the errors of an efficient estimate and its difference from
+//! it, for as long as the calibration lasts. At its end the first one gives way if its own tests found a turn, if it
+//! refuses its calibration and the second one doesn't, or if the two differ by more than the information of a rest explains: the errors of an efficient estimate and its difference from
 //! another one are uncorrelated, so that the variance of the difference is that of the variances (J. A. Hausman,
 //! "Specification tests in econometrics", Econometrica 46, 1978).
 
@@ -69,6 +69,10 @@ impl WithoutRest {
         match core.refusal() {
             Some(CalibrationRefusal::CaseTurned(turn)) => {
                 rest.contradicted = Some(turn.to_string())
+            }
+            // With the same samples and tests the one difference is the rest.
+            Some(refusal) if self.core.refusal().is_none() => {
+                rest.contradicted = Some(refusal.to_string());
             }
             Some(_) => return rest,
             None if self.core.refusal().is_some() => return rest,

@@ -19,6 +19,7 @@ mod campaign_scale;
 mod campaign_selection;
 #[cfg(unix)]
 mod capture;
+mod case_at_rest;
 mod case_progress;
 mod chain;
 mod characterise;

@@ -92,7 +92,8 @@ impl CaseRestScore {
         match &self.contradicted {
             None => format!("the rest of the case is used{compared}"),
             Some(why) => format!(
-                "the rest of the case is NOT used, the case turned: {why}; all parameters are those of the calibration without it"
+                "the rest of the case is NOT used, because the case turned or a sensor drifted: {why}; all parameters are those \
+                 of the calibration without it"
             ),
         }
     }

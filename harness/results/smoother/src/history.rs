@@ -51,7 +51,10 @@ impl FilterHistory {
     /// If the core has no filter of 39 states, or no file can be made.
     pub fn new(config: &CoreConfig, nodes: usize) -> Result<Self, SmootherError> {
         let (calibration, kalman) = filter_of(config)?;
-        if kalman.further.has_border() {
+        if kalman.further.rest.is_some() {
+            return Err(SmootherError::OtherStates { found: "the attitude of a case at rest" });
+        }
+        if kalman.further.has_states() {
             return Err(SmootherError::OtherStates { found: "further states" });
         }
         if kalman.sway == SwayNoise::Coloured {

@@ -139,6 +139,9 @@ impl Setup {
         if kalman.sway != SwayNoise::White {
             return not_built("procedure.calibration.aiding.sway", "\"coloured\"", "\"white\"");
         }
+        if kalman.further.rest.is_some() {
+            return not_built("procedure.calibration.aiding.rest", "a case at rest", "none");
+        }
         if kalman.further != Further::default() {
             return not_built("procedure.calibration.further", "further states", "none");
         }

@@ -135,6 +135,12 @@ pub enum AnalysisError {
          the σ of this filter"
     )]
     GimbalAngles,
+    /// The case is said to rest, which the prediction doesn't have.
+    #[error(
+        "predict the ensemble: found procedure.calibration.aiding.rest, expected none; \"octant observe\" has the σ of \
+         this filter"
+    )]
+    Rest,
     /// The filter has states beside the 39, of which true sizes have to be known.
     #[error(
         "predict the covariance from σ of the 39 states: found procedure.calibration.further, expected none"
@@ -223,6 +229,9 @@ pub fn reach(
     };
     if kalman.sway != SwayNoise::White {
         return Err(AnalysisError::ColouredSway);
+    }
+    if kalman.further.rest.is_some() {
+        return Err(AnalysisError::Rest);
     }
     if kalman.further.angles.is_some() {
         return Err(AnalysisError::GimbalAngles);

@@ -96,7 +96,8 @@ pub(crate) fn perfect_instrument(
     plant.turntable.encoder_sigma_rad = 0.0;
     plant.turntable.errors = Default::default();
     let estimator = config.calibration.as_ref().map(|calibration| &calibration.estimator);
-    if matches!(estimator, Some(Estimator::Kalman(kalman)) if kalman.further.angles.is_some()) {
+    if matches!(estimator, Some(Estimator::Kalman(kalman)) if kalman.further.attitude_at_rest().is_some())
+    {
         plant.turntable.non_orthogonality_rad = 0.0;
     }
     plant.site.gravity = Default::default();

@@ -64,7 +64,7 @@ pub struct CaseRest {
 
 impl CaseRest {
     /// Uncertainty of a gimbal's angle after each move, 1σ, rad: that of an encoder of which nothing is known.
-    pub const ANGLE_SIGMA_RAD: f64 = core::f64::consts::PI / 180.0;
+    pub const ANGLE_SIGMA_RAD: f64 = 0.1 * core::f64::consts::PI / 180.0;
 }
 
 /// Errors that follow the temperature of the instrument linearly. The core has to be told the temperature

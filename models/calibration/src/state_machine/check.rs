@@ -87,7 +87,9 @@ pub enum CoreConfigError {
     #[error("the sway is coloured and further states are on, one of the two is expected")]
     SwayWithFurther,
     /// Gimbal angles as measurements of attitude where the case moves.
-    #[error("gimbal angles are measurements and the base moves, a base at rest is expected")]
+    #[error(
+        "gimbal angles or the rest of the case are measurements and the base moves, a base at rest is expected"
+    )]
     AnglesOnMovingBase,
     /// Errors that follow the temperature beside angles as measurements.
     #[error(

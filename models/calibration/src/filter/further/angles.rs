@@ -284,7 +284,7 @@ impl FurtherStates {
 
     /// Rows of the states at a stop of a case at rest; `None` where no case is said to rest.
     ///
-    /// Within a stop they are those of its first reference. An angle with 1° of uncertainty and the case's heading are
+    /// Within a stop they are those of its first reference. An angle with 0.1° of uncertainty and the case's heading are
     /// seen as one sum there. Were the axes turned with each correction of the tilt, 1″ a time, the filter would take
     /// their difference for observed (as in simultaneous localization and mapping: Huang, Mourikis and Roumeliotis,
     /// "Observability-based rules for designing consistent EKF SLAM estimators", 2010).
