@@ -178,6 +178,7 @@ impl Parts {
             inputs: Vec::new(),
             altered_streams: None,
             method: "eight".to_owned(),
+            followed: None,
             heading: None,
             calibration: Some(calibration(self.refused)),
             navigation: Some(NavigationScore {
@@ -207,6 +208,7 @@ impl Parts {
             baseline: self.baseline.as_ref().map(|(fired, refused)| BaselineMethod {
                 planned: None,
                 done: None,
+                followed: None,
                 label: "six".to_owned(),
                 calibration: Some(calibration(*refused)),
                 navigation: None,

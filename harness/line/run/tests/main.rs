@@ -7,6 +7,7 @@ mod faults_any;
 mod faults_compared;
 mod faults_suite;
 mod findings;
+mod followed;
 mod follow;
 mod heading;
 mod measures;

@@ -11,7 +11,7 @@ use super::{
 use octant_account::Account;
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
-use octant_sample::GimbalCommand;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_sample::disturbance::Disturbed;
 use octant_trajectory::Comparison;
 
@@ -106,6 +106,10 @@ impl Source for AnySource {
     #[inline]
     fn truth_stands(&self) -> Option<bool> {
         each!(&self.kind, source => source.truth_stands())
+    }
+
+    fn known_noise(&self) -> Option<NoiseIntegral> {
+        each!(&self.kind, source => source.known_noise())
     }
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {

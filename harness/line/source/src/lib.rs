@@ -45,7 +45,7 @@ use octant_base::failing::{Failing, FailureKind};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 pub use octant_sample::Epoch;
-use octant_sample::GimbalCommand;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_sample::disturbance::Disturbed;
 use octant_trajectory::Comparison;
 
@@ -73,6 +73,11 @@ pub trait Source {
     /// Returns whether the truth at the last epoch is, but for its time, that at the epoch before;
     /// `Some(false)`: it may differ, and costs more than a sample. `None`: this isn't known without it.
     fn truth_stands(&self) -> Option<bool> {
+        None
+    }
+
+    /// Returns the running integral of the noise in the samples so far, as far as the source knows it.
+    fn known_noise(&self) -> Option<NoiseIntegral> {
         None
     }
 

@@ -146,6 +146,7 @@ pub(crate) fn data() -> ReportData {
         faults: vec![],
         inputs: Vec::new(),
         altered_streams: None,
+        followed: None,
         heading: None,
         method: "eight positions".to_owned(),
         calibration: Some(eight),
@@ -153,6 +154,7 @@ pub(crate) fn data() -> ReportData {
         baseline: Some(BaselineMethod {
             planned: None,
             done: None,
+            followed: None,
             label: "six positions".to_owned(),
             calibration: Some(six),
             navigation: Some(navigation(g(&truth()) - g(&six_estimate), 2.5)),

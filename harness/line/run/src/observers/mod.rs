@@ -37,7 +37,10 @@ use self::moments::{Moment, Moments};
 use self::solution::{SolutionErrors, attitude_error, errors, position_error, velocity_error};
 use octant_endpoint::Tells;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, Innovation, Mode, NavigationCovariance, Output, Truth};
+use octant_followed::{Compared, Follower, Told};
+use octant_sample::{
+    DeviceTime, Innovation, Mode, NavigationCovariance, NoiseIntegral, Output, Truth,
+};
 use octant_score::trace::RunTrace;
 use octant_source::Epoch;
 use std::collections::BTreeMap;
@@ -67,6 +70,9 @@ pub struct Observers {
     pub moments: Moments,
     /// The last navigation against the truth.
     pub drift: NavigationDrift,
+    /// The navigation against the noise of its samples.
+    pub followed: Follower,
+    known_noise: Option<NoiseIntegral>,
     /// The parameters.
     pub convergence: Convergence,
     /// Health, NIS and innovations.
@@ -142,6 +148,8 @@ impl Observers {
             moments: Moments::new(tells, plan.standing_rad(), plan.prior().copied()),
             done: Done::towards(plan),
             drift: NavigationDrift::of_gaps(gaps_s),
+            followed: Follower::new(quantities(tells)),
+            known_noise: None,
             convergence: Convergence::over(calibration_s),
             measurements: Measurements::new(),
             gimbals: GimbalSeries::default(),
@@ -168,6 +176,7 @@ impl Observers {
         self.tells.position = told(TELLS_POSITION);
         self.tells.tilt = told(TELLS_TILT);
         self.moments.unit_tells(self.tells);
+        self.followed = Follower::new(quantities(self.tells));
     }
 
     /// Takes the source's epoch, before faults alter it.
@@ -192,6 +201,7 @@ impl Observers {
     pub fn restarted(&mut self) {
         self.answers.restarted();
         self.done.restarted();
+        self.followed.interrupt();
         if let Some(heading) = &mut self.heading {
             let last_ns = self.now.source.map_or(self.now.last_ns, |time| time.ns);
             heading.switched_on(last_ns);
@@ -209,8 +219,12 @@ impl Observers {
         self.done.epoch(now_ns, output);
         if altered {
             self.answers.altered();
+            self.followed.interrupt();
         } else {
             self.answers.follow(now_ns, sent, output);
+            if !follow::is_free(output) {
+                self.followed.interrupt();
+            }
         }
         let due = self.epoch(output);
         if due {
@@ -288,6 +302,7 @@ impl Observers {
             self.now.next_score_ns = now_ns;
         }
         self.moments.comes(moment);
+        self.followed.interrupt();
         self.now.mode = output.mode;
     }
 
@@ -316,6 +331,7 @@ impl Observers {
     pub(crate) fn lost(&mut self) {
         self.drift.lost();
         self.answers.altered();
+        self.followed.interrupt();
     }
 
     /// Takes the truth at an answer that asked for it in [`Self::between`].
@@ -327,6 +343,11 @@ impl Observers {
         }
     }
 
+    /// Takes the noise in the samples up to the truth that follows.
+    pub fn noise(&mut self, noise: Option<NoiseIntegral>) {
+        self.known_noise = noise;
+    }
+
     /// Takes the truth of the last epoch.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
         if let Some(heading) = &mut self.heading {
@@ -334,6 +355,11 @@ impl Observers {
             heading.read(self.tells, now_ns, output, truth);
         }
         self.moments.truth(output, truth);
+        if output.mode == Mode::Navigating {
+            let (answer, noise) = (&output.navigation, self.known_noise.take());
+            let now_ns = self.now.source.unwrap_or(output.device_time).ns;
+            self.followed.compare(&Compared { now_ns, answer, truth, noise });
+        }
         let attitude_error = attitude_error(self.tells, output, truth);
         let velocity_error_mps = velocity_error(self.tells, output, truth);
         if let Some(filtered) = &mut self.charts.filtered {
@@ -361,4 +387,10 @@ impl Observers {
     pub(crate) fn elapsed_s(&self) -> f64 {
         self.now.last_ns as f64 * 1e-9
     }
+}
+
+/// Quantities of a solution whose errors are tested for the noise of the samples.
+fn quantities(tells: Tells) -> Told {
+    let Tells { attitude, tilt, velocity, position, .. } = tells;
+    Told { attitude: attitude && tilt, velocity, position }
 }

@@ -180,6 +180,7 @@ pub fn assemble_with(
         alignment: primary.alignment,
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
+        followed: primary.followed.take(),
         heading: primary.observed.heading.as_ref().map(|readings| readings.score()),
         baseline: baseline.map(|run| BaselineMethod {
             planned: Some(run.observed.done.planned()),
@@ -188,6 +189,7 @@ pub fn assemble_with(
             alignment: run.alignment,
             calibration: run.calibration,
             navigation: run.navigation,
+            followed: run.followed,
             counterfactual: baseline_counterfactual,
             stream_hash: run.recorder.stream_hash,
             faults: results(&run.receipts),
@@ -387,11 +389,18 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
     for fault in &summary.faults {
         line(format!("  {}", fault.sentence()));
     }
-    let primary = (&summary.method, &summary.alignment, &summary.calibration, &summary.navigation);
+    let primary = (
+        &summary.method,
+        &summary.alignment,
+        &summary.calibration,
+        &summary.navigation,
+        &summary.followed,
+    );
     let baseline = summary.baseline.as_ref();
-    let methods = std::iter::once(primary)
-        .chain(baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation)));
-    for (label, alignment, calibration, navigation) in methods {
+    let methods = std::iter::once(primary).chain(
+        baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation, &b.followed)),
+    );
+    for (label, alignment, calibration, navigation, followed) in methods {
         line(format!("{label}, seed {}", summary.seed));
         alignment.iter().map(|alignment| alignment_line(alignment, units)).for_each(&mut line);
         if let Some(calibration) = calibration {
@@ -419,6 +428,7 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
         if let Some(n) = navigation {
             line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
             navigation_lines(n, units).into_iter().for_each(&mut line);
+            followed.iter().for_each(|score| line(format!("    samples   {}", score.line())));
         }
     }
     summary.heading.iter().flat_map(heading_lines).for_each(&mut line);

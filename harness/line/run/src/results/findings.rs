@@ -13,7 +13,7 @@ use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
 use octant_scenario::{CalibrationSpec, Method, Realtime, Scenario};
 use octant_score::judge::Finding;
-use octant_score::summary::PacingRecord;
+use octant_score::summary::{FollowedScore, PacingRecord};
 use octant_score::work::{RunPart, duration};
 use octant_source::OF_REFERENCE;
 use octant_verdict::Verdict;
@@ -142,6 +142,7 @@ fn of_unit(scenario: &Scenario, run: &MethodRun, method: Method, place: &str) ->
         return findings;
     }
     let mut reasons = run.observed.answers.do_not_follow();
+    reasons.extend(run.followed.as_ref().and_then(FollowedScore::doubt).map(str::to_owned));
     let plan = scenario.calibration_of(method);
     reasons.extend(plan.and_then(|plan| not_estimated(scenario, plan, run)));
     reasons.extend(plan.and_then(|plan| not_white(plan, run)));

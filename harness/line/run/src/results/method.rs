@@ -15,7 +15,8 @@ use octant_sample::{Mode, Parameters};
 use octant_scenario::{CalibrationSpec, Method, Scenario};
 use octant_score::parameters::{nees, score, score_further, worst_normalized_error};
 use octant_score::summary::{
-    AlignmentResult, CalibrationScore, HeightChannel, NavigationScore, SolutionScore,
+    AlignmentResult, CalibrationScore, FollowedScore, HeightChannel, KnownNoise, NavigationScore,
+    SolutionScore,
 };
 use std::sync::Arc;
 
@@ -34,6 +35,8 @@ pub struct MethodRun {
     pub calibration: Option<CalibrationScore>,
     /// Result of the navigation.
     pub navigation: Option<NavigationScore>,
+    /// Whether the navigation followed its samples.
+    pub followed: Option<FollowedScore>,
     /// Summary of the recorder.
     pub recorder: RecorderSummary,
     /// What was observed of the run.
@@ -128,6 +131,8 @@ impl MethodRun {
             Some(drift) => Some(drift.finish(HeightChannel::Held).map_err(RunError::from)?),
             None => None,
         };
+        let follows = observers.answers.has_to_follow() && navigation.is_some();
+        let followed = follows.then(|| observers.followed.score(KnownNoise::Simulated));
         let recorder = match recorder.finish() {
             Ok(summary) => summary,
             // The end of the recording found no space: the file is readable up to there, as after any
@@ -145,6 +150,7 @@ impl MethodRun {
             alignment: aligned::alignment(scenario, &observers),
             calibration,
             navigation,
+            followed,
             recorder,
             truth: truth.map(|draws| draws.parameters),
             table: conclusion.table,

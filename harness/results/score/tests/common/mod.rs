@@ -31,6 +31,7 @@ pub(crate) fn summary() -> Summary {
         planned: None,
         done: None,
         faults: vec![],
+        followed: None,
         heading: None,
         method: "eight".to_owned(),
         calibration: Some(CalibrationScore {
