@@ -13,10 +13,10 @@ use crate::increments::Increments;
 use crate::processes::Wander;
 use nalgebra::{Matrix3, Vector3};
 use octant_random::stream::{Ahead, Triad};
-use octant_sample::{NoiseIntegral, Status};
 use octant_sample::counts::{
     Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, count_triad,
 };
+use octant_sample::{NoiseIntegral, Status};
 
 fn rows(m: [[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| m[row][column])

@@ -85,7 +85,8 @@ struct MadeUp(u64);
 
 impl MadeUp {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0) * 1.732
     }
 }
@@ -93,8 +94,8 @@ impl MadeUp {
 #[test]
 fn the_core_follows() {
     let scenario = scenario("1 h", "");
-    let run =
-        run_method(&scenario, Method::Primary, 3, StreamKeeping::None, &Control::default()).unwrap();
+    let run = run_method(&scenario, Method::Primary, 3, StreamKeeping::None, &Control::default())
+        .unwrap();
     let summary = assemble(&scenario, 3, run, None).unwrap().summary;
     let score = followed(&summary);
     assert_eq!(score.verdict, Followed::Followed);

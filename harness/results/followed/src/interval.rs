@@ -8,6 +8,8 @@ use octant_sample::{Navigation, NoiseIntegral, Truth};
 
 /// Largest turn of the body in an interval, rad: its mean attitude is then that of every sample within 1.5 %.
 const TURN_RAD_MAX: f64 = 0.35;
+/// Rate of the body against n below which it hardly turns, rad/s.
+const QUIET_RADPS: f64 = 1e-3;
 /// Largest error of an attitude for which the dynamics are linear, rad.
 const TILT_RAD_MAX: f64 = 0.1;
 
@@ -78,6 +80,8 @@ fn quaternion([w, x, y, z]: [f64; 4]) -> UnitQuaternion<f64> {
 pub struct Interval {
     /// Length, s.
     pub dt_s: f64,
+    /// True if the body hardly turns against n.
+    pub is_quiet: bool,
     earth: Ellipsoid,
     /// Velocity over ground in its middle, m/s.
     velocity_mps: Vector3<f64>,
@@ -107,7 +111,12 @@ pub struct Noise {
 impl Interval {
     /// Makes the interval between two true states with the noise in it; `None` where the body turns too far in it.
     #[must_use]
-    pub fn between(from: &Truth, to: &Truth, noise: [&NoiseIntegral; 2], dt_s: f64) -> Option<Self> {
+    pub fn between(
+        from: &Truth,
+        to: &Truth,
+        noise: [&NoiseIntegral; 2],
+        dt_s: f64,
+    ) -> Option<Self> {
         let earth = Ellipsoid::at(from.latitude_rad, from.height_m);
         let (before, now) = (quaternion(from.q_nb), quaternion(to.q_nb));
         let turned = log(&(before.inverse() * now));
@@ -130,6 +139,7 @@ impl Interval {
         let pushed = in_n(|noise| noise.delta_velocity_mps);
         Some(Self {
             dt_s,
+            is_quiet: turned.norm() < QUIET_RADPS * dt_s,
             earth,
             velocity_mps,
             rate_radps,
@@ -163,10 +173,8 @@ impl Interval {
         let turning = (rate_radps + earth.earth_rate()).cross(&error)
             + (2.0 * earth_rate + transport).cross(velocity_mps);
         errors.phi_rad = moved.into();
-        errors.velocity_mps = [
-            north_mps + pushed.x - dt_s * turning.x,
-            east_mps + pushed.y - dt_s * turning.y,
-        ];
+        errors.velocity_mps =
+            [north_mps + pushed.x - dt_s * turning.x, east_mps + pushed.y - dt_s * turning.y];
         errors.position_m[0] += 0.5 * dt_s * (north_mps + errors.velocity_mps[0]);
         errors.position_m[1] += 0.5 * dt_s * (east_mps + errors.velocity_mps[1]);
     }

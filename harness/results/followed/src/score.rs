@@ -160,14 +160,18 @@ impl FollowedScore {
         if material.unknown == material.compared {
             return Self::not_tested("the noise of the samples isn't known");
         }
-        let of = |told: bool, slopes: fn(&Windows) -> Box<dyn Iterator<Item = (usize, Slope)> + '_>| {
-            let all = windows.iter().flat_map(|of| slopes(of).map(move |slope| Channel::of(of, slope)));
-            told.then(|| Channel::best(all)).flatten()
-        };
+        let of =
+            |told: bool, slopes: fn(&Windows) -> Box<dyn Iterator<Item = (usize, Slope)> + '_>| {
+                let all = windows
+                    .iter()
+                    .flat_map(|of| slopes(of).map(move |slope| Channel::of(of, slope)));
+                told.then(|| Channel::best(all)).flatten()
+            };
         let attitude = of(told.attitude, |windows| Box::new(windows.attitude()));
         let velocity = of(told.velocity, |windows| Box::new(windows.velocity()));
         let named = [("attitude", attitude), ("velocity", velocity)];
-        let channels = || named.iter().filter_map(|(name, channel)| Some((*name, channel.as_ref()?)));
+        let channels =
+            || named.iter().filter_map(|(name, channel)| Some((*name, channel.as_ref()?)));
         let ignored: Vec<String> = channels()
             .filter(|(_, channel)| channel.verdict == Followed::NotFollowed)
             .map(|(name, channel)| {
@@ -201,8 +205,9 @@ impl FollowedScore {
     #[must_use]
     pub fn line(&self) -> String {
         let channel = |name: &str, channel: &Option<Channel>| {
-            let words = channel.as_ref()?.words();
-            Some(format!("{name} {words}"))
+            let channel = channel.as_ref()?;
+            let tested = if channel.verdict == Followed::NotTested { ", not tested" } else { "" };
+            Some(format!("{name} {}{tested}", channel.words()))
         };
         let slopes = [channel("attitude", &self.attitude), channel("velocity", &self.velocity)];
         let slopes: Vec<String> = slopes.into_iter().flatten().collect();

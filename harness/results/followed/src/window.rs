@@ -61,14 +61,15 @@ impl Past {
 
 /// Windows of one length, one after the other, with their regressions.
 ///
-/// The velocity is regressed twice: with the tilt that the unit tells, which turns the force of a moving ship, and with
+/// Each quantity is regressed over all windows, and over those without a turn, which errors of encoders at a turn can't
+/// spoil. The velocity is regressed with the tilt that the unit tells, which turns the force of a moving ship, and with
 /// none, which a coarse or false attitude can't spoil.
 #[derive(Clone, Debug)]
 pub struct Windows {
     length_s: usize,
     open: Option<Open>,
-    attitude: Quantity<OF_ATTITUDE>,
-    velocity: [Quantity<OF_VELOCITY>; 2],
+    attitude: [Quantity<OF_ATTITUDE>; 2],
+    velocity: [Quantity<OF_VELOCITY>; 3],
     windows: u64,
 }
 
@@ -100,6 +101,7 @@ struct Open {
     carried: [Errors; 3],
     intervals: usize,
     elapsed_s: f64,
+    is_quiet: bool,
     /// Effects of the gyros' parameters on φ and on the velocity, north and east, and of the accelerometers' ones.
     phi: [[f64; GYRO_PARAMETERS]; 2],
     by_tilt: [[f64; GYRO_PARAMETERS]; 2],
@@ -117,6 +119,7 @@ impl Open {
             ],
             intervals: 0,
             elapsed_s: 0.0,
+            is_quiet: true,
             phi: [[0.0; GYRO_PARAMETERS]; 2],
             by_tilt: [[0.0; GYRO_PARAMETERS]; 2],
             by_force: [[0.0; ACCEL_PARAMETERS]; 2],
@@ -127,6 +130,7 @@ impl Open {
         self.carried.iter_mut().for_each(|errors| interval.carry(errors));
         self.intervals += 1;
         self.elapsed_s += interval.dt_s;
+        self.is_quiet &= interval.is_quiet;
         let effects = [0, 1].map(|axis| interval.gyro_effects(axis));
         for parameter in 0..GYRO_PARAMETERS {
             let added = effects.map(|effects| effects[parameter]);
@@ -153,8 +157,8 @@ impl Windows {
         Self {
             length_s,
             open: None,
-            attitude: Quantity::of(rows),
-            velocity: [Quantity::of(rows), Quantity::of(rows)],
+            attitude: [0; 2].map(|_| Quantity::of(rows)),
+            velocity: [0; 3].map(|_| Quantity::of(rows)),
             windows: 0,
         }
     }
@@ -162,7 +166,7 @@ impl Windows {
     /// Ends the window that is open without a result.
     pub fn interrupt(&mut self) {
         self.open = None;
-        self.attitude.end();
+        self.attitude.iter_mut().for_each(Quantity::end);
         self.velocity.iter_mut().for_each(Quantity::end);
     }
 
@@ -203,16 +207,22 @@ impl Windows {
                 row[GYRO_PARAMETERS + lag] = effect[axis];
             }
             row[OF_ATTITUDE - 1] = errors.phi_rad[axis] - of_attitude.phi_rad[axis];
-            self.attitude.push(axis, &row);
+            self.attitude[0].push(axis, &row);
+            if open.is_quiet {
+                self.attitude[1].push(axis, &row);
+            }
             let mut row = [0.0; OF_VELOCITY];
             row[..GYRO_PARAMETERS].copy_from_slice(&open.by_tilt[axis]);
             row[GYRO_PARAMETERS..PARAMETERS].copy_from_slice(&open.by_force[axis]);
             for (lag, effect) in effects.iter().enumerate() {
                 row[PARAMETERS + lag] = effect[2 + axis];
             }
-            for (velocity, carried) in self.velocity.iter_mut().zip([of_both, of_velocity]) {
+            let ways = [(of_both, true), (of_velocity, true), (of_velocity, open.is_quiet)];
+            for (velocity, (carried, counts)) in self.velocity.iter_mut().zip(ways) {
                 row[OF_VELOCITY - 1] = errors.velocity_mps[axis] - carried.velocity_mps[axis];
-                velocity.push(axis, &row);
+                if counts {
+                    velocity.push(axis, &row);
+                }
             }
         }
     }
@@ -236,7 +246,7 @@ impl Windows {
 
     /// Regressions of the attitude for each lag, s.
     pub fn attitude(&self) -> impl Iterator<Item = (usize, Slope)> {
-        self.slopes(GYRO_PARAMETERS, &self.attitude.normal)
+        self.attitude.iter().flat_map(|of| self.slopes(GYRO_PARAMETERS, &of.normal))
     }
 
     /// Regressions of the velocity for each lag, s.

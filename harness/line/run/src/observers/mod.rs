@@ -36,8 +36,8 @@ use self::measurements::Measurements;
 use self::moments::{Moment, Moments};
 use self::solution::{SolutionErrors, attitude_error, errors, position_error, velocity_error};
 use octant_endpoint::Tells;
-use octant_sample::parameters::ParameterEstimate;
 use octant_followed::{Compared, Follower, Told};
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{
     DeviceTime, Innovation, Mode, NavigationCovariance, NoiseIntegral, Output, Truth,
 };

@@ -6,10 +6,12 @@
 #![allow(clippy::print_stdout)]
 
 mod simulate;
+mod units;
 
 use octant_followed::{Followed, FollowedScore};
-use simulate::{ADAPTIVE, Course, GOOD, HONEST, Way, adaptive, honest, scored, trial};
+use simulate::{Course, scored, trial};
 use std::fmt::Write as _;
+use units::{ADAPTIVE, GOOD, HONEST, Way, adaptive, honest};
 
 /// Results of one kind of unit.
 #[derive(Default)]
@@ -30,12 +32,15 @@ impl Tally {
 
     fn line(&self) -> String {
         let [followed, not_followed, not_tested] = self.verdicts;
-        let (low, high) = self.slopes.iter().fold((f64::NAN, f64::NAN), |(low, high), slope| {
-            (slope.min(low), slope.max(high))
-        });
+        let (low, high) = self
+            .slopes
+            .iter()
+            .fold((f64::NAN, f64::NAN), |(low, high), slope| (slope.min(low), slope.max(high)));
         let trials = followed + not_followed + not_tested;
         let name = self.name;
-        format!("| {name} | {trials} | {followed} | {not_followed} | {not_tested} | {low:.3} to {high:.3} |")
+        format!(
+            "| {name} | {trials} | {followed} | {not_followed} | {not_tested} | {low:.3} to {high:.3} |"
+        )
     }
 }
 
@@ -58,7 +63,9 @@ fn study(
 }
 
 fn table(title: &str, tallies: &[Tally]) {
-    println!("\n| {title} | trials | followed | not followed | not tested | slopes |\n|---|---|---|---|---|---|");
+    println!(
+        "\n| {title} | trials | followed | not followed | not tested | slopes |\n|---|---|---|---|---|---|"
+    );
     tallies.iter().for_each(|tally| println!("{}", tally.line()));
     let sum = |index: usize| tallies.iter().map(|tally| tally.verdicts[index]).sum::<u64>();
     println!("| all | {} | {} | {} | {} | |", sum(0) + sum(1) + sum(2), sum(0), sum(1), sum(2));
@@ -67,9 +74,7 @@ fn table(title: &str, tallies: &[Tally]) {
 /// Writes a navigation as rows: time, truth (attitude), answer (attitude, velocity, latitude, longitude), noise (gyros,
 /// accelerometers).
 fn rows(course: &Course, way: &Way, seed: u64) -> String {
-    let mut text = String::from(
-        "t,qw,qx,qy,qz,aw,ax,ay,az,vn,ve,lat,lon,gx,gy,gz,fx,fy,fz\n",
-    );
+    let mut text = String::from("t,qw,qx,qy,qz,aw,ax,ay,az,vn,ve,lat,lon,gx,gy,gz,fx,fy,fz\n");
     trial(course, way, seed, |second, line| {
         let a = &line.answer;
         let numbers = line.truth.q_nb.iter().chain(&a.q_nb).chain(&a.velocity_mps[..2]);

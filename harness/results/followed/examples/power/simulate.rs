@@ -1,204 +1,30 @@
 //! Navigations at rest on a turning instrument, at the level of their errors: 4 h at the noise of Table 1, integrated with a
 //! step and a scheme of their own, and answers that are made of them or of something else.
 
+use super::units::{Chance, Made, Scheme, Way};
+use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_earth::frames::{c_cb, c_nc, quaternion_from_matrix};
 use octant_earth::rotation::exp;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
-use nalgebra::{Matrix3, Vector3};
 use octant_followed::{Compared, FollowedScore, Follower, KnownNoise, Told};
 use octant_random::draws::Draws;
 use octant_random::stream::Triad;
 use octant_sample::{Navigation, NoiseIntegral, Truth};
 
 /// Angle random walk of Table 1, rad/√s.
-pub const ARW: f64 = 7e-4 * DEG_PER_SQRT_HOUR;
+pub(crate) const ARW: f64 = 7e-4 * DEG_PER_SQRT_HOUR;
 /// Velocity random walk of Table 1, m/s/√s.
-pub const VRW: f64 = 50.0 * MICRO_G;
+pub(crate) const VRW: f64 = 50.0 * MICRO_G;
 const LATITUDE_RAD: f64 = 30.5 * DEG;
 const TURN_RADPS: f64 = 10.0 * DEG;
 const DWELL_S: f64 = 300.0;
 /// Moves of the navigation: roll (x) or azimuth (z), forth or back by half a turn.
 const MOVES: &[u8; 32] = b"X+Z+X-Z-Z+X+Z-X-X-Z-X+Z+Z-X-Z+X+";
 
-/// A way to compute and to give answers.
-#[derive(Clone, Debug)]
-pub struct Way {
-    /// Name, as in the table.
-    pub name: &'static str,
-    /// Step of the integration, s.
-    pub step_s: f64,
-    /// Size of the errors of the parameters, in those of Table 1.
-    pub parameters: f64,
-    /// Errors of tilt and heading at the start, rad.
-    pub start_rad: [f64; 2],
-    /// Error of the integration, as noise in parts of the random walk.
-    pub coning: f64,
-    /// Bias instability, rad/s and m/s², with 1000 s.
-    pub wander: [f64; 2],
-    /// Time in which the levels are damped, s; infinite: they aren't.
-    pub damped_s: f64,
-    /// Time between two answers, s, and their delay, s.
-    pub every_s: f64,
-    pub late_s: f64,
-    /// Time over which the answers are smoothed, s.
-    pub smooth_s: f64,
-    /// Resolution of attitude, rad, and velocity, m/s.
-    pub digits: [f64; 2],
-    /// True if the answers are in single precision.
-    pub single: bool,
-    /// Part of the samples' own noise in its errors, and part of noise that it makes up.
-    pub noise: [f64; 2],
-    /// White noise that is added to the answers, rad and m/s.
-    pub jitter: [f64; 2],
-    /// Attitude and velocity that are made up: none, sines, or what the encoders show.
-    pub attitude: Made,
-    pub velocity: Made,
-}
-
-/// What a quantity is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Made {
-    /// Integrated noise.
-    Integrated,
-    /// Exact.
-    Known,
-    /// Sines of the Schuler period and of a day.
-    Sines,
-    /// The encoders, with their errors: another one in every dwell.
-    Encoders,
-}
-
-/// Computes well, and answers at once.
-pub const GOOD: Way = Way {
-    name: "integrates every sample",
-    step_s: 0.25,
-    parameters: 0.1,
-    start_rad: [ARCSEC, 10.0 * ARCSEC],
-    coning: 0.0,
-    wander: [0.0; 2],
-    damped_s: f64::INFINITY,
-    every_s: 1.0,
-    late_s: 0.0,
-    smooth_s: 0.0,
-    digits: [0.0; 2],
-    single: false,
-    noise: [1.0, 0.0],
-    jitter: [0.0; 2],
-    attitude: Made::Integrated,
-    velocity: Made::Integrated,
-};
-
-/// Random numbers of a trial.
-struct Chance(Draws);
-
-impl Chance {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.0.unit()
-    }
-
-    /// Draws evenly in the logarithm.
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        libm::exp(self.between(libm::log(low), libm::log(high)))
-    }
-
-    fn normals(&mut self, sigma: f64) -> Vector3<f64> {
-        Vector3::new(self.0.normal(), self.0.normal(), self.0.normal()) * sigma
-    }
-}
-
-/// Number of kinds of units that follow, and of those that don't.
-pub const HONEST: usize = 12;
-pub const ADAPTIVE: usize = 10;
-
-/// Draws a unit that follows its samples.
-pub fn honest(kind: usize, seed: u64) -> Way {
-    let mut by = Chance(Draws::of(seed, "power.honest", kind as u64));
-    let start = by.decades(0.1, 30.0);
-    let mut way = Way {
-        parameters: by.decades(1e-3, 0.3),
-        start_rad: [start * ARCSEC, 10.0 * start * ARCSEC],
-        ..GOOD
-    };
-    match kind {
-        0 => {}
-        1 => (way.name, way.parameters) = ("compensates nothing", by.between(0.5, 1.0)),
-        2 => {
-            way.name = "detuned: starts with ten times the errors";
-            way.start_rad = way.start_rad.map(|rad| 10.0 * rad);
-        }
-        3 => (way.name, way.step_s) = ("integrates in longer steps", [0.5, 1.0][by.0.below(2)]),
-        4 => (way.name, way.coning) = ("integrates roughly", by.between(0.05, 0.5)),
-        5 => (way.name, way.single) = ("answers in single precision", true),
-        6 => {
-            way.name = "answers in coarse digits";
-            way.digits = [by.decades(0.001, 0.2) * ARCSEC, by.decades(1e-5, 2e-3)];
-        }
-        7 => {
-            way.name = "answers every 2, 5, 10 or 50 s";
-            way.every_s = [2.0, 5.0, 10.0, 50.0][by.0.below(4)];
-        }
-        8 => (way.name, way.late_s) = ("answers late by up to 2 s", by.between(0.0, 2.0)),
-        9 => (way.name, way.smooth_s) = ("smooths its answers over up to 3 s", by.between(0.5, 3.0)),
-        10 => {
-            way.name = "has unstable biases";
-            way.wander = [by.decades(1e-4, 2e-3) * DEG_PER_HOUR, by.decades(0.1, 5.0) * MICRO_G];
-        }
-        _ => {
-            way.name = "damps its levels in 20 to 60 min";
-            way.damped_s = by.between(1200.0, 3600.0);
-        }
-    }
-    way
-}
-
-/// Draws a unit that doesn't follow its samples.
-pub fn adaptive(kind: usize, seed: u64) -> Way {
-    let mut by = Chance(Draws::of(seed, "power.adaptive", kind as u64));
-    let none = Way { noise: [0.0; 2], parameters: by.decades(1e-3, 0.3), ..GOOD };
-    let known = Way { attitude: Made::Known, velocity: Made::Known, ..none.clone() };
-    match kind {
-        0 => Way { name: "knows the site, with 1e-12 of jitter", jitter: [1e-12; 2], ..known },
-        1 => Way {
-            name: "makes up a Schuler curve",
-            attitude: Made::Sines,
-            velocity: Made::Sines,
-            jitter: [1e-10, 1e-8],
-            ..none
-        },
-        2 => Way { name: "simulates itself, with other noise", noise: [0.0, 1.0], ..none },
-        3 => Way {
-            name: "simulates itself, with less noise",
-            noise: [0.0, by.between(0.1, 0.9)],
-            ..none
-        },
-        4 => Way {
-            name: "takes its attitude from the encoders",
-            attitude: Made::Encoders,
-            jitter: [1e-9, 0.0],
-            noise: [1.0, 0.0],
-            ..none
-        },
-        5 => Way {
-            name: "is drawn to the site: 0 to 0.6 of its own errors",
-            noise: [by.between(0.0, 0.6), 0.0],
-            ..none
-        },
-        6 => Way { name: "smooths its answers over 5 to 20 min", smooth_s: by.between(300.0, 1200.0), ..GOOD },
-        7 => Way { name: "answers 2 to 20 min late", late_s: by.between(120.0, 1200.0), ..GOOD },
-        8 => Way {
-            name: "knows its velocity, and integrates attitude alone",
-            velocity: Made::Known,
-            noise: [1.0, 0.0],
-            jitter: [0.0, 1e-6],
-            ..none
-        },
-        _ => Way {
-            name: "adds noise to the site, like that of a sample",
-            jitter: [by.decades(1e-10, 0.1 * ARW), by.decades(1e-8, 0.1 * VRW)],
-            ..known
-        },
-    }
+/// Draws a vector of normal numbers.
+fn normals(by: &mut Chance, sigma: f64) -> Vector3<f64> {
+    Vector3::new(by.0.normal(), by.0.normal(), by.0.normal()) * sigma
 }
 
 /// Attitude of the body after a time of the navigation, as its gimbal angles: azimuth and roll, rad.
@@ -218,14 +44,14 @@ fn gimbals(t_s: f64) -> [f64; 2] {
 }
 
 /// Seconds, azimuth and roll of each, made once: the motion is that of every trial.
-pub struct Course {
+pub(crate) struct Course {
     attitudes: Vec<Matrix3<f64>>,
     earth: Ellipsoid,
 }
 
 impl Course {
     /// Makes a navigation of some hours, with four attitudes a second.
-    pub fn new(hours: f64) -> Self {
+    pub(crate) fn new(hours: f64) -> Self {
         let count = (hours * 3600.0 * 4.0) as usize + 1;
         let attitude = |k: usize| {
             let [azimuth, roll] = gimbals(k as f64 * 0.25);
@@ -249,7 +75,13 @@ struct State {
 }
 
 /// Rates of the errors; `rate` and `force` are the errors of the sensors in n.
-fn rates(s: &State, earth: &Ellipsoid, rate: &Vector3<f64>, force: &Vector3<f64>, damped_s: f64) -> State {
+fn rates(
+    s: &State,
+    earth: &Ellipsoid,
+    rate: &Vector3<f64>,
+    force: &Vector3<f64>,
+    damped_s: f64,
+) -> State {
     let (sin, cos) = (earth.sin_latitude, earth.cos_latitude);
     let [north, east] = s.velocity;
     let latitude = s.position[0] / earth.meridian_radius_m;
@@ -284,35 +116,41 @@ impl State {
 
 /// A line of a trial, once a second: what the scoring gets.
 #[derive(Clone, Copy, Debug)]
-pub struct Line {
-    pub answer: Navigation,
-    pub truth: Truth,
-    pub noise: NoiseIntegral,
+pub(crate) struct Line {
+    pub(crate) answer: Navigation,
+    pub(crate) truth: Truth,
+    pub(crate) noise: NoiseIntegral,
 }
 
 /// Runs a trial and gives every second to `take`.
-pub fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(u64, &Line)) {
+pub(crate) fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(u64, &Line)) {
     let (gyro, accelerometer) = (Triad::new(seed, "gyro"), Triad::new(seed, "accelerometer"));
     let own = [Triad::new(seed, "own.gyro"), Triad::new(seed, "own.accelerometer")];
-    let (rough, white) = (Triad::new(seed, "rough"), [Triad::new(seed, "phi"), Triad::new(seed, "v")]);
+    let (rough, white) =
+        (Triad::new(seed, "rough"), [Triad::new(seed, "phi"), Triad::new(seed, "v")]);
     let mut by = Chance(Draws::of(seed, "power.unit", 0));
     let size = way.parameters;
-    let bias = by.normals(size * 0.005 * DEG_PER_HOUR);
-    let accel_bias = by.normals(size * 100.0 * MICRO_G);
+    let bias = normals(&mut by, size * 0.005 * DEG_PER_HOUR);
+    let accel_bias = normals(&mut by, size * 100.0 * MICRO_G);
     let matrix = |by: &mut Chance, sigma: f64| {
-        Matrix3::from_columns(&[by.normals(sigma), by.normals(sigma), by.normals(sigma)])
+        Matrix3::from_columns(&[normals(by, sigma), normals(by, sigma), normals(by, sigma)])
     };
     let (m_gyro, m_accel) = (matrix(&mut by, size * 1e-4), matrix(&mut by, size * 1e-4));
     let g_dependent = matrix(&mut by, size * 5e-4 * DEG_PER_HOUR / 9.80665);
-    let start = by.normals(1.0);
+    let start = normals(&mut by, 1.0);
     let mut state = State {
-        phi: Vector3::new(way.start_rad[0] * start.x, way.start_rad[0] * start.y, way.start_rad[1] * start.z),
+        phi: Vector3::new(
+            way.start_rad[0] * start.x,
+            way.start_rad[0] * start.y,
+            way.start_rad[1] * start.z,
+        ),
         velocity: [by.between(-0.01, 0.01), by.between(-0.01, 0.01)],
         position: [0.0; 2],
     };
     let (mut wander, earth) = ([Vector3::zeros(); 2], &course.earth);
-    let sines: [Vector3<f64>; 3] = [by.normals(5.0 * ARCSEC), by.normals(5.0 * ARCSEC), by.normals(3.0)];
-    let mut encoder = by.normals(18.0 * ARCSEC);
+    let sines: [Vector3<f64>; 3] =
+        [normals(&mut by, 5.0 * ARCSEC), normals(&mut by, 5.0 * ARCSEC), normals(&mut by, 3.0)];
+    let mut encoder = normals(&mut by, 18.0 * ARCSEC);
     let mut dwell = gimbals(0.0);
     let mut noise = NoiseIntegral::default();
     let (mut smoothed, mut past, mut held) = (state, Vec::new(), None);
@@ -323,12 +161,15 @@ pub fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(u64, &L
             let (from, to) = (&course.attitudes[at], &course.attitudes[at + each]);
             let dt_s = way.step_s;
             let mid = 0.5 * (from + to);
-            let turned = octant_earth::rotation::log(&quaternion_from_matrix(&(from.transpose() * to)));
-            let (turn, root) = (mid.transpose() * earth.earth_rate() + turned / dt_s, libm::sqrt(dt_s));
+            let turned =
+                octant_earth::rotation::log(&quaternion_from_matrix(&(from.transpose() * to)));
+            let (turn, root) =
+                (mid.transpose() * earth.earth_rate() + turned / dt_s, libm::sqrt(dt_s));
             let force = mid.transpose() * Vector3::new(0.0, 0.0, -earth.gravity_mps2);
             // The noise is that of the quarters of a second, whatever the step.
             let sum = |triad: &Triad| {
-                (at..at + each).map(|k| Vector3::from(triad.at(k as u64))).sum::<Vector3<f64>>() * 0.5
+                (at..at + each).map(|k| Vector3::from(triad.at(k as u64))).sum::<Vector3<f64>>()
+                    * 0.5
             };
             let (n_gyro, n_accel) = (sum(&gyro) * ARW, sum(&accelerometer) * VRW);
             for axis in 0..3 {
@@ -337,24 +178,51 @@ pub fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(u64, &L
             }
             let [own_gyro, own_accel] = [&own[0], &own[1]].map(sum);
             let keep = libm::exp(-dt_s / 1000.0);
-            for (wander, (triad, sigma)) in wander.iter_mut().zip([(&own[0], way.wander[0]), (&own[1], way.wander[1])]) {
+            for (wander, (triad, sigma)) in
+                wander.iter_mut().zip([(&own[0], way.wander[0]), (&own[1], way.wander[1])])
+            {
                 let step = Vector3::from(triad.at((1 << 40) + at as u64)) * sigma;
                 *wander = *wander * keep + step * libm::sqrt(1.0 - keep * keep);
             }
             let roughly = Vector3::from(rough.at(at as u64)) * (way.coning * ARW * root);
+            let counts = |at: usize| if way.skips { 2.0 * (at % 2) as f64 } else { 1.0 };
+            let own_of = |triad: &Triad| {
+                (at..at + each)
+                    .map(|k| Vector3::from(triad.at(k as u64)) * counts(k))
+                    .sum::<Vector3<f64>>()
+                    * 0.5
+            };
+            let (n_gyro, n_accel) = (own_of(&gyro) * ARW, own_of(&accelerometer) * VRW);
             let theta = n_gyro * way.noise[0] + own_gyro * (way.noise[1] * ARW) + roughly;
             let pushed = n_accel * way.noise[0] + own_accel * (way.noise[1] * VRW);
             let rate = bias + m_gyro * turn + g_dependent * force + wander[0] + theta / dt_s;
             let felt = accel_bias + m_accel * force + wander[1] + pushed / dt_s;
             let (rate, felt) = (mid * rate, mid * felt);
-            let half = state.plus(&rates(&state, earth, &rate, &felt, way.damped_s), 0.5 * dt_s);
-            state = state.plus(&rates(&half, earth, &rate, &felt, way.damped_s), dt_s);
+            let of = |state: &State| rates(state, earth, &rate, &felt, way.damped_s);
+            state = match way.scheme {
+                Scheme::Euler => state.plus(&of(&state), dt_s),
+                Scheme::Midpoint => state.plus(&of(&state.plus(&of(&state), 0.5 * dt_s)), dt_s),
+                Scheme::Heun => {
+                    let first = state.plus(&of(&state), dt_s);
+                    let second = first.plus(&of(&first), dt_s);
+                    State {
+                        phi: 0.5 * (state.phi + second.phi),
+                        velocity: [0, 1].map(|i| 0.5 * (state.velocity[i] + second.velocity[i])),
+                        position: [0, 1].map(|i| 0.5 * (state.position[i] + second.position[i])),
+                    }
+                }
+            };
+            if way.state_single {
+                state.velocity = state.velocity.map(|value| f64::from(value as f32));
+            }
             if way.smooth_s > 0.0 {
                 let part = dt_s / (0.5 * way.smooth_s + dt_s);
                 smoothed.phi += (state.phi - smoothed.phi) * part;
                 for axis in 0..2 {
-                    smoothed.velocity[axis] += (state.velocity[axis] - smoothed.velocity[axis]) * part;
-                    smoothed.position[axis] += (state.position[axis] - smoothed.position[axis]) * part;
+                    smoothed.velocity[axis] +=
+                        (state.velocity[axis] - smoothed.velocity[axis]) * part;
+                    smoothed.position[axis] +=
+                        (state.position[axis] - smoothed.position[axis]) * part;
                 }
             } else {
                 smoothed = state;
@@ -364,13 +232,16 @@ pub fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(u64, &L
         let now = second as f64;
         let angles = gimbals(now);
         if angles != dwell {
-            (dwell, encoder) = (angles, by.normals(18.0 * ARCSEC));
+            (dwell, encoder) = (angles, normals(&mut by, 18.0 * ARCSEC));
         }
         let late = ((way.late_s + now % way.every_s) / way.step_s) as usize;
         let computed = past[past.len().saturating_sub(1 + late)];
-        let [phi_jitter, v_jitter] = [&white[0], &white[1]].map(|triad| Vector3::from(triad.at(second as u64)));
+        let [phi_jitter, v_jitter] =
+            [&white[0], &white[1]].map(|triad| Vector3::from(triad.at(second as u64)));
         let (day, schuler) = (EARTH_RATE_RADPS * now, libm::sqrt(9.8 / 6.37e6) * now);
-        let made = |sin: &Vector3<f64>, of: f64| sin * libm::sin(schuler + 1.0) * of + sines[1] * libm::sin(day) * of;
+        let made = |sin: &Vector3<f64>, of: f64| {
+            sin * libm::sin(schuler + 1.0) * of + sines[1] * libm::sin(day) * of
+        };
         let phi = match way.attitude {
             Made::Integrated => computed.phi,
             Made::Known => Vector3::zeros(),
@@ -382,9 +253,12 @@ pub fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(u64, &L
             Made::Known => [0.0; 2],
             Made::Sines => [made(&sines[0], 7.9e3).y, made(&sines[0], -7.9e3).x],
         };
-        let round = |value: f64, digit: f64| if digit > 0.0 { libm::round(value / digit) * digit } else { value };
+        let round = |value: f64, digit: f64| {
+            if digit > 0.0 { libm::round(value / digit) * digit } else { value }
+        };
         let phi = (phi + phi_jitter * way.jitter[0]).map(|value| round(value, way.digits[0]));
-        let velocity = [0, 1].map(|axis| round(velocity[axis] + v_jitter[axis] * way.jitter[1], way.digits[1]));
+        let velocity = [0, 1]
+            .map(|axis| round(velocity[axis] + v_jitter[axis] * way.jitter[1], way.digits[1]));
         let truth_q = quaternion_from_matrix(&course.attitudes[4 * second]);
         let q = exp(&-phi) * truth_q;
         let single = |value: f64| if way.single { f64::from(value as f32) } else { value };
@@ -412,7 +286,7 @@ pub fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(u64, &L
 }
 
 /// Scores a trial with the function that scores runs.
-pub fn scored(course: &Course, way: &Way, seed: u64) -> FollowedScore {
+pub(crate) fn scored(course: &Course, way: &Way, seed: u64) -> FollowedScore {
     let mut follower = Follower::new(Told { attitude: true, velocity: true, position: true });
     trial(course, way, seed, |second, line| {
         let Line { answer, truth, noise } = line;
