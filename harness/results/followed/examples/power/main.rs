@@ -102,7 +102,7 @@ fn main() {
             println!("write {file}: {error}");
             std::process::exit(4);
         }
-        println!("{}", followed.line());
+        println!("{}", serde_json::to_string(&followed).unwrap_or_default());
         return;
     }
     let number = |index: usize, default: u64| {
