@@ -148,6 +148,7 @@ impl Parts {
             nis_expected: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
+            least_gain: None,
             refused: refused.then(|| "so it was".to_owned()),
             refusal_explained: Vec::new(),
             health: HealthCounts::default(),
@@ -179,6 +180,7 @@ impl Parts {
             altered_streams: None,
             method: "eight".to_owned(),
             followed: None,
+            false_alarms: None,
             heading: None,
             calibration: Some(calibration(self.refused)),
             navigation: Some(NavigationScore {

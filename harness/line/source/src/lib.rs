@@ -6,6 +6,7 @@ pub mod configure;
 mod counting;
 mod definition;
 mod described;
+mod dither;
 mod fields;
 mod fmu;
 mod foreign;
@@ -45,8 +46,8 @@ use octant_base::failing::{Failing, FailureKind};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 pub use octant_sample::Epoch;
-use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_sample::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_trajectory::Comparison;
 
 /// End of the name of a measured reference's account.

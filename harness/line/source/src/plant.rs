@@ -3,8 +3,8 @@
 use super::{Epoch, Source, SourceError};
 use octant_plant::config::PlantConfig;
 use octant_plant::{ComparedPlant, Plant, PlantConfigError, Truth};
-use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_sample::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 
 /// The simulated instrument, for a fixed number of samples.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ use crate::score::{FollowedScore, KnownNoise, Material};
 use crate::window::{Past, Windows};
 use octant_sample::{Navigation, NoiseIntegral, Truth};
 
-/// Lengths of the windows, s.
-const LENGTHS_S: [usize; 3] = [10, 30, 60];
+/// Lengths of the windows, s: short ones say most of a small noise, long ones of coarse, slow and late answers.
+const LENGTHS_S: [usize; 4] = [2, 10, 30, 60];
 /// Longest time between two comparisons, ns: a longer one is a break.
 const BREAK_NS: u64 = 2_500_000_000;
 
@@ -145,8 +145,9 @@ impl State {
 
     fn take(&mut self, interval: &Interval, answered: Option<&Errors>) {
         self.past.push(interval);
+        let effects = interval.effects();
         for windows in &mut self.windows {
-            windows.carry(interval);
+            windows.carry(interval, &effects);
             if let Some(errors) = answered {
                 windows.answer(errors, &self.past);
             }

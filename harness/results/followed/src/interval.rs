@@ -108,6 +108,15 @@ pub struct Noise {
     pub velocity_mps: [f64; 2],
 }
 
+/// Effects of parameters in an interval, north and east.
+#[derive(Clone, Copy, Debug)]
+pub struct Effects {
+    /// Of those of the gyros on φ.
+    pub gyro: [[f64; GYRO_PARAMETERS]; 2],
+    /// Of those of the accelerometers on the velocity.
+    pub accelerometer: [[f64; ACCEL_PARAMETERS]; 2],
+}
+
 impl Interval {
     /// Makes the interval between two true states with the noise in it; `None` where the body turns too far in it.
     #[must_use]
@@ -179,6 +188,33 @@ impl Interval {
         errors.position_m[1] += 0.5 * dt_s * (east_mps + errors.velocity_mps[1]);
     }
 
+    /// Carries an attitude error over the interval by itself.
+    pub fn carry_attitude(&self, phi_rad: &mut [f64; 3]) {
+        let phi = Vector3::from(*phi_rad);
+        *phi_rad = (phi - self.dt_s * self.rate_radps.cross(&phi)).into();
+    }
+
+    /// Turn of the body against i, in b, rad.
+    #[must_use]
+    pub fn turn_rad(&self) -> [f64; 3] {
+        self.turn_b.into()
+    }
+
+    /// Specific force in b over the interval, m/s.
+    #[must_use]
+    pub fn force_mps(&self) -> [f64; 3] {
+        self.force_b.into()
+    }
+
+    /// Effects of the parameters, north and east.
+    #[must_use]
+    pub fn effects(&self) -> Effects {
+        Effects {
+            gyro: [0, 1].map(|axis| self.gyro_effects(axis)),
+            accelerometer: [0, 1].map(|axis| self.accel_effects(axis)),
+        }
+    }
+
     /// Change of the velocity, north and east, by a tilt φ, m/s.
     #[must_use]
     pub fn pushed(&self, [north, east]: [f64; 2]) -> [f64; 2] {
@@ -186,8 +222,7 @@ impl Interval {
     }
 
     /// Effect of each parameter of the gyros on φ north (`axis` 0) or east (1).
-    #[must_use]
-    pub fn gyro_effects(&self, axis: usize) -> [f64; GYRO_PARAMETERS] {
+    fn gyro_effects(&self, axis: usize) -> [f64; GYRO_PARAMETERS] {
         let mut effects = [0.0; GYRO_PARAMETERS];
         for sensor in 0..3 {
             let c = -self.c_nb[(axis, sensor)];
@@ -201,8 +236,7 @@ impl Interval {
     }
 
     /// Effect of each parameter of the accelerometers on the velocity north (`axis` 0) or east (1).
-    #[must_use]
-    pub fn accel_effects(&self, axis: usize) -> [f64; ACCEL_PARAMETERS] {
+    fn accel_effects(&self, axis: usize) -> [f64; ACCEL_PARAMETERS] {
         let mut effects = [0.0; ACCEL_PARAMETERS];
         let mut next = 3;
         for sensor in 0..3 {

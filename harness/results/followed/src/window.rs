@@ -1,6 +1,6 @@
 //! Sums of the error dynamics over windows of a length, and the regressions of their residuals.
 
-use crate::interval::{ACCEL_PARAMETERS, Errors, GYRO_PARAMETERS, Interval, Noise};
+use crate::interval::{ACCEL_PARAMETERS, Effects, Errors, GYRO_PARAMETERS, Interval, Noise};
 use crate::regression::{Block, Normal, Slope};
 
 /// Lags of the answers behind the samples that are tried, s; none is longer than the window.
@@ -97,8 +97,12 @@ impl<const N: usize> Quantity<N> {
 /// A window that has begun.
 #[derive(Clone, Copy, Debug)]
 struct Open {
-    /// Errors at its beginning, carried to now: of the attitude alone, of velocity and attitude, of the velocity alone.
-    carried: [Errors; 3],
+    /// Errors at its beginning, carried to now.
+    carried: Errors,
+    /// Attitude at its beginning, carried to now by itself.
+    phi_rad: [f64; 3],
+    /// Velocity at its beginning: without a tilt it stays.
+    velocity_mps: [f64; 2],
     intervals: usize,
     elapsed_s: f64,
     is_quiet: bool,
@@ -110,13 +114,10 @@ struct Open {
 
 impl Open {
     fn at(errors: &Errors) -> Self {
-        let none = Errors::default();
         Self {
-            carried: [
-                Errors { phi_rad: errors.phi_rad, ..none },
-                *errors,
-                Errors { velocity_mps: errors.velocity_mps, ..none },
-            ],
+            carried: *errors,
+            phi_rad: errors.phi_rad,
+            velocity_mps: errors.velocity_mps,
             intervals: 0,
             elapsed_s: 0.0,
             is_quiet: true,
@@ -126,14 +127,14 @@ impl Open {
         }
     }
 
-    fn carry(&mut self, interval: &Interval) {
-        self.carried.iter_mut().for_each(|errors| interval.carry(errors));
+    fn carry(&mut self, interval: &Interval, effects: &Effects) {
+        interval.carry(&mut self.carried);
+        interval.carry_attitude(&mut self.phi_rad);
         self.intervals += 1;
         self.elapsed_s += interval.dt_s;
         self.is_quiet &= interval.is_quiet;
-        let effects = [0, 1].map(|axis| interval.gyro_effects(axis));
         for parameter in 0..GYRO_PARAMETERS {
-            let added = effects.map(|effects| effects[parameter]);
+            let added = effects.gyro.map(|effects| effects[parameter]);
             let [north, east] = [0, 1].map(|axis| self.phi[axis][parameter] + 0.5 * added[axis]);
             let pushed = interval.pushed([north, east]);
             for axis in 0..2 {
@@ -142,7 +143,7 @@ impl Open {
             }
         }
         for (axis, by_force) in self.by_force.iter_mut().enumerate() {
-            let effects = interval.accel_effects(axis);
+            let effects = &effects.accelerometer[axis];
             by_force.iter_mut().zip(effects).for_each(|(sum, effect)| *sum += effect);
         }
     }
@@ -150,7 +151,7 @@ impl Open {
 
 impl Windows {
     /// Makes windows of at least this length, s, which is longer where the answers change more seldom. Lines are taken
-    /// from blocks of two minutes or four windows.
+    /// from blocks of two minutes, of at least four windows and at most twelve.
     #[must_use]
     pub fn of(length_s: usize) -> Self {
         let rows = 120 / length_s;
@@ -171,9 +172,9 @@ impl Windows {
     }
 
     /// Carries the open window over an interval.
-    pub fn carry(&mut self, interval: &Interval) {
+    pub fn carry(&mut self, interval: &Interval, effects: &Effects) {
         if let Some(open) = &mut self.open {
-            open.carry(interval);
+            open.carry(interval, effects);
         }
     }
 
@@ -199,14 +200,13 @@ impl Windows {
             *effect = sum;
         }
         self.windows += 1;
-        let [of_attitude, of_both, of_velocity] = &open.carried;
         for axis in 0..2 {
             let mut row = [0.0; OF_ATTITUDE];
             row[..GYRO_PARAMETERS].copy_from_slice(&open.phi[axis]);
             for (lag, effect) in effects.iter().enumerate() {
                 row[GYRO_PARAMETERS + lag] = effect[axis];
             }
-            row[OF_ATTITUDE - 1] = errors.phi_rad[axis] - of_attitude.phi_rad[axis];
+            row[OF_ATTITUDE - 1] = errors.phi_rad[axis] - open.phi_rad[axis];
             self.attitude[0].push(axis, &row);
             if open.is_quiet {
                 self.attitude[1].push(axis, &row);
@@ -217,9 +217,10 @@ impl Windows {
             for (lag, effect) in effects.iter().enumerate() {
                 row[PARAMETERS + lag] = effect[2 + axis];
             }
-            let ways = [(of_both, true), (of_velocity, true), (of_velocity, open.is_quiet)];
+            let (with, without) = (open.carried.velocity_mps, open.velocity_mps);
+            let ways = [(with, true), (without, true), (without, open.is_quiet)];
             for (velocity, (carried, counts)) in self.velocity.iter_mut().zip(ways) {
-                row[OF_VELOCITY - 1] = errors.velocity_mps[axis] - carried.velocity_mps[axis];
+                row[OF_VELOCITY - 1] = errors.velocity_mps[axis] - carried[axis];
                 if counts {
                     velocity.push(axis, &row);
                 }

@@ -98,6 +98,10 @@ pub struct Summary {
     /// twin.
     #[serde(default)]
     pub counterfactual: Option<Counterfactual>,
+    /// Reports of the core in the run without faults: in the run itself if it has none, else in its twin; left out where
+    /// neither ran.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub false_alarms: Option<u64>,
     /// Second method of the same run: same instrument, same noise.
     pub baseline: Option<BaselineMethod>,
     /// Physical references for the scores.

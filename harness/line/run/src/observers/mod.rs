@@ -19,6 +19,7 @@ mod fit;
 pub mod follow;
 pub mod gimbals;
 pub mod heading;
+pub mod information;
 pub mod measurements;
 pub mod moments;
 mod solution;
@@ -32,6 +33,7 @@ use self::drift::NavigationDrift;
 use self::filtered::FilteredSeries;
 use self::gimbals::GimbalSeries;
 use self::heading::HeadingReadings;
+use self::information::CalibrationInformation;
 use self::measurements::Measurements;
 use self::moments::{Moment, Moments};
 use self::solution::{SolutionErrors, attitude_error, errors, position_error, velocity_error};
@@ -73,6 +75,8 @@ pub struct Observers {
     /// The navigation against the noise of its samples.
     pub followed: Follower,
     known_noise: Option<NoiseIntegral>,
+    /// What the samples of the calibration can say of the parameters.
+    pub information: CalibrationInformation,
     /// The parameters.
     pub convergence: Convergence,
     /// Health, NIS and innovations.
@@ -150,6 +154,7 @@ impl Observers {
             drift: NavigationDrift::of_gaps(gaps_s),
             followed: Follower::new(quantities(tells)),
             known_noise: None,
+            information: CalibrationInformation::default(),
             convergence: Convergence::over(calibration_s),
             measurements: Measurements::new(),
             gimbals: GimbalSeries::default(),
@@ -355,6 +360,10 @@ impl Observers {
             heading.read(self.tells, now_ns, output, truth);
         }
         self.moments.truth(output, truth);
+        if output.mode == Mode::Calibrating {
+            let now_ns = self.now.source.unwrap_or(output.device_time).ns;
+            self.information.truth(now_ns, truth);
+        }
         if output.mode == Mode::Navigating {
             let (answer, noise) = (&output.navigation, self.known_noise.take());
             let now_ns = self.now.source.unwrap_or(output.device_time).ns;

@@ -137,6 +137,13 @@ pub fn assemble_with(
         timing: timing(scenario, &primary),
     };
     let counterfactual = difference(scenario, &primary);
+    let false_alarms = match &counterfactual {
+        Some(counterfactual) => Some(counterfactual.false_alarms),
+        None => {
+            let health = &primary.observed.measurements.health;
+            scenario.faults.is_empty().then(|| health.episodes().len() as u64 + health.unlisted())
+        }
+    };
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let baseline_solution = baseline
         .as_ref()
@@ -195,6 +202,7 @@ pub fn assemble_with(
             faults: results(&run.receipts),
         }),
         reference: Some(references),
+        false_alarms,
         counterfactual,
         allan_deviation: primary.observed.charts.at_rest.take().and_then(|at_rest| {
             AllanDeviation::of(&at_rest.record(), instrument_noise(scenario).as_ref()).map(Box::new)
@@ -349,6 +357,14 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         facts.retain(|(name, _)| of_solution.contains(&name.as_str()));
     }
     facts.extend(scenario.source.fact().map(|(name, fact)| (name.to_owned(), fact)));
+    if let Some(part) = scenario.dither {
+        let grows = 100.0 * (libm::hypot(1.0, part) - 1.0);
+        let fact = format!(
+            "{} of the random walks, from the seed: the noise of the samples grows by {grows:.1} %",
+            number::plain(part, 4)
+        );
+        facts.push(("dither".to_owned(), fact));
+    }
     if let Some(drive) = &scenario.drive {
         let range = |axis: TableAxis| {
             let limits = drive.settings.limits.of(axis);

@@ -13,7 +13,9 @@ use octant_recorder::{Event, RecorderError, RecorderSummary, concluded};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Parameters};
 use octant_scenario::{CalibrationSpec, Method, Scenario};
-use octant_score::parameters::{nees, score, score_further, worst_normalized_error};
+use octant_score::parameters::{
+    least_gain, nees, score, score_further, set_gains, worst_normalized_error,
+};
 use octant_score::summary::{
     AlignmentResult, CalibrationScore, FollowedScore, HeightChannel, KnownNoise, NavigationScore,
     SolutionScore,
@@ -99,7 +101,11 @@ impl MethodRun {
         let done = observers.done.work();
         let calibration = scenario.calibration_of(method).map(|plan| {
             let known = truth.map(|draws| &draws.parameters);
-            let parameters = score(known, &estimate.parameters, &estimate.sigma);
+            let mut parameters = score(known, &estimate.parameters, &estimate.sigma);
+            if let Estimator::Kalman(kalman) = &plan.estimator {
+                let prior = std::array::from_fn(|i| kalman.prior.of(ParameterGroup::of(i)));
+                set_gains(&mut parameters, &prior);
+            }
             let all = truth.map(|draws| scenario.true_further(draws));
             let further = score_further(all.as_ref(), conclusion.further.as_ref());
             let of_core = &observers.measurements.health;
@@ -118,6 +124,7 @@ impl MethodRun {
                 nis_expected: conclusion.nis_expected,
                 nees: nees(&parameters, &further),
                 worst_normalized_error: worst_normalized_error(&parameters, &planned_of(plan)),
+                least_gain: least_gain(&parameters, &planned_of(plan)),
                 parameters,
                 further,
                 refused: refused.clone(),
@@ -132,7 +139,13 @@ impl MethodRun {
             None => None,
         };
         let follows = observers.answers.has_to_follow() && navigation.is_some();
-        let followed = follows.then(|| observers.followed.score(KnownNoise::Simulated));
+        let followed = follows.then(|| {
+            observers.followed.score(if scenario.dither.is_some() {
+                KnownNoise::Dither
+            } else {
+                KnownNoise::Simulated
+            })
+        });
         let recorder = match recorder.finish() {
             Ok(summary) => summary,
             // The end of the recording found no space: the file is readable up to there, as after any

@@ -15,8 +15,8 @@ use octant_plant::config::{CaseAttitude, Dockside, Motion, PlantConfig, PlantSit
 use octant_plant::course::{Course, CoursePoint};
 use octant_plant::{ComparedPlant, PlantConfigError, Truth};
 use octant_recorder::event::BenchRecord;
-use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_sample::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_scenario::Fmu;
 use octant_scenario::channel::{Channel, case};
 use std::collections::VecDeque;

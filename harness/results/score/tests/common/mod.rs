@@ -32,6 +32,7 @@ pub(crate) fn summary() -> Summary {
         done: None,
         faults: vec![],
         followed: None,
+        false_alarms: None,
         heading: None,
         method: "eight".to_owned(),
         calibration: Some(CalibrationScore {
@@ -46,6 +47,7 @@ pub(crate) fn summary() -> Summary {
             nis_expected: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
+            least_gain: None,
             refused: None,
             refusal_explained: Vec::new(),
             health: HealthCounts::default(),
