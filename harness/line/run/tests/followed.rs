@@ -148,7 +148,7 @@ fn an_attitude_from_the_encoders_did_not_follow() {
 
 #[test]
 fn a_short_navigation_is_not_tested_and_says_so() {
-    let scenario = scenario("2 min", "");
+    let scenario = scenario("20 s", "");
     let summary = run(&scenario, |_, _| {});
     let score = followed(&summary);
     assert_eq!(score.verdict, Followed::NotTested);

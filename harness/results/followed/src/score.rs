@@ -123,11 +123,13 @@ impl Channel {
         }
     }
 
-    /// Selects the regression that is closest to 1 of those that say something, else the one that says most.
+    /// Selects the regression that says most of those that follow; else the one closest to 1 of those that say something;
+    /// else the one that says most.
     fn best(all: impl Iterator<Item = Self>) -> Option<Self> {
         let key = |channel: &Self| match channel.verdict {
-            Followed::NotTested => (true, channel.sigma),
-            _ => (false, (channel.slope - 1.0).abs()),
+            Followed::Followed => (0, channel.sigma),
+            Followed::NotFollowed => (1, (channel.slope - 1.0).abs()),
+            Followed::NotTested => (2, channel.sigma),
         };
         all.min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal))
     }
