@@ -13,10 +13,10 @@ use crate::increments::Increments;
 use crate::processes::Wander;
 use nalgebra::{Matrix3, Vector3};
 use octant_random::stream::{Ahead, Triad};
-use octant_sample::Status;
 use octant_sample::counts::{
     Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, count_triad,
 };
+use octant_sample::{NoiseIntegral, Status};
 
 fn rows(m: [[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| m[row][column])
@@ -35,6 +35,8 @@ struct Triple {
     lsb: f64,
     sigma_counts: f64,
     noise: Ahead,
+    /// Sum of the white noise so far, in counts. No state: only its differences are used, of one run.
+    white_counts: [f64; 3],
     wanders: Vec<Wander>,
     /// Range in counts per interval; infinite: only the range of the format.
     limit_counts: f64,
@@ -49,7 +51,7 @@ octant_state::state! {
     Triple {
         values: quantizers, accumulators;
         parts: wanders;
-        kept: lsb, sigma_counts, noise, limit_counts, quantum_counts
+        kept: lsb, sigma_counts, noise, white_counts, limit_counts, quantum_counts
     }
 }
 
@@ -62,7 +64,9 @@ impl Triple {
         if self.sigma_counts > 0.0 {
             let noise = self.noise.at(sample);
             for axis in 0..3 {
-                reading[axis] += self.sigma_counts * noise[axis];
+                let white = self.sigma_counts * noise[axis];
+                reading[axis] += white;
+                self.white_counts[axis] += white;
             }
         }
         let mut saturated = false;
@@ -201,6 +205,7 @@ impl Sensors {
             lsb,
             sigma_counts: density * root_dt / lsb,
             noise: Ahead::new(Triad::new(seed, name)),
+            white_counts: [0.0; 3],
             wanders,
             limit_counts: if range > 0.0 { range * dt / lsb } else { f64::INFINITY },
             quantum_counts: quantum / lsb,
@@ -273,6 +278,15 @@ impl Sensors {
     pub(crate) fn navigate(&mut self) {
         self.gyro.navigate();
         self.accelerometer.navigate();
+    }
+
+    /// Sums of the white noise in all samples so far.
+    pub(crate) fn white_noise(&self) -> NoiseIntegral {
+        let sum = |triad: &Triple| triad.white_counts.map(|counts| counts * triad.lsb);
+        NoiseIntegral {
+            delta_theta_rad: sum(&self.gyro),
+            delta_velocity_mps: sum(&self.accelerometer),
+        }
     }
 
     /// Applies the error model without noise and temperature.

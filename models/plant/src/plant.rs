@@ -16,7 +16,9 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_random::stream::Triad;
 use octant_sample::disturbance::{Disturbance, Motor};
 use octant_sample::time::SimulatedTime;
-use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Status, Truth};
+use octant_sample::{
+    Aiding, DeviceTime, GimbalAngles, GimbalCommand, NoiseIntegral, Sample, Status, Truth,
+};
 
 pub use state::FORMAT as STATE_FORMAT;
 
@@ -302,6 +304,12 @@ impl Plant {
             None => truth,
             Some((motion, rate)) => displaced(truth, &motion, &rate),
         }
+    }
+
+    /// White noise in the samples so far.
+    #[must_use]
+    pub fn white_noise(&self) -> NoiseIntegral {
+        self.sensors.white_noise()
     }
 
     /// True if nothing moved in the last interval, neither case nor gimbals: the truth at its end is that

@@ -149,6 +149,7 @@ impl Parts {
             rest: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
+            least_gain: None,
             refused: refused.then(|| "so it was".to_owned()),
             refusal_explained: Vec::new(),
             health: HealthCounts::default(),
@@ -179,6 +180,8 @@ impl Parts {
             inputs: Vec::new(),
             altered_streams: None,
             method: "eight".to_owned(),
+            followed: None,
+            false_alarms: None,
             heading: None,
             calibration: Some(calibration(self.refused)),
             navigation: Some(NavigationScore {
@@ -208,6 +211,7 @@ impl Parts {
             baseline: self.baseline.as_ref().map(|(fired, refused)| BaselineMethod {
                 planned: None,
                 done: None,
+                followed: None,
                 label: "six".to_owned(),
                 calibration: Some(calibration(*refused)),
                 navigation: None,

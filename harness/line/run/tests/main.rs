@@ -8,6 +8,7 @@ mod faults_compared;
 mod faults_suite;
 mod findings;
 mod follow;
+mod followed;
 mod heading;
 mod measures;
 mod minimise;

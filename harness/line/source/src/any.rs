@@ -1,5 +1,6 @@
 //! A source whose kind is known only from the scenario.
 
+use super::dither::Dither;
 use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
 use super::known::KnownReference;
@@ -11,14 +12,15 @@ use super::{
 use octant_account::Account;
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
-use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_trajectory::Comparison;
 
 /// A source of any kind.
 pub struct AnySource {
     kind: Kind,
     reference: Option<AddedReference>,
+    dither: Option<Box<Dither>>,
 }
 
 /// A reference that the source doesn't bring.
@@ -43,7 +45,7 @@ macro_rules! of {
     ($($from:ty => $kind:ident),*) => {
         $(impl From<$from> for AnySource {
             fn from(source: $from) -> Self {
-                Self { kind: Kind::$kind(Box::new(source)), reference: None }
+                Self { kind: Kind::$kind(Box::new(source)), reference: None, dither: None }
             }
         })*
     };
@@ -71,11 +73,17 @@ macro_rules! each {
 /// A source that a host program made.
 impl From<Box<dyn Source + Send>> for AnySource {
     fn from(source: Box<dyn Source + Send>) -> Self {
-        Self { kind: Kind::Foreign(source), reference: None }
+        Self { kind: Kind::Foreign(source), reference: None, dither: None }
     }
 }
 
 impl AnySource {
+    /// Adds noise to the samples.
+    #[must_use]
+    pub(super) fn with_dither(self, dither: Option<Dither>) -> Self {
+        Self { dither: dither.map(Box::new), ..self }
+    }
+
     /// Adds a reference that the source doesn't bring.
     #[must_use]
     pub(super) fn with_reference(self, reference: Option<AddedReference>) -> Self {
@@ -96,6 +104,9 @@ impl Source for AnySource {
             Some(AddedReference::Measured(measured)) => measured.came()?,
             Some(AddedReference::Known(_)) => {}
         }
+        if let Some(dither) = self.dither.as_mut().filter(|_| more) {
+            dither.add(&mut epoch.sample);
+        }
         Ok(more)
     }
 
@@ -106,6 +117,14 @@ impl Source for AnySource {
     #[inline]
     fn truth_stands(&self) -> Option<bool> {
         each!(&self.kind, source => source.truth_stands())
+    }
+
+    fn known_noise(&self) -> Option<NoiseIntegral> {
+        let own = each!(&self.kind, source => source.known_noise());
+        match &self.dither {
+            None => own,
+            Some(dither) => Some(own.unwrap_or_default() + dither.sum()),
+        }
     }
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {

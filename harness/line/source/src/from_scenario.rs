@@ -1,6 +1,7 @@
 //! Opens the source of a scenario.
 
 use super::any::AddedReference;
+use super::dither::Dither;
 use super::known::KnownReference;
 use super::measured::{MeasuredReference, ReferenceRows};
 use super::reference_mcap::ReferenceMcap;
@@ -46,7 +47,8 @@ pub fn open_with(
     fmus: &OpenedFmus,
 ) -> Result<Option<AnySource>, SourceError> {
     let Some(opened) = open_itself(scenario, plant, fmus)? else { return Ok(None) };
-    Ok(Some(opened.with_reference(reference(scenario)?)))
+    let dither = Dither::of(scenario, plant.seed);
+    Ok(Some(opened.with_reference(reference(scenario)?).with_dither(dither)))
 }
 
 /// Opens the reference of a scenario whose source brings none.

@@ -6,6 +6,7 @@ pub mod configure;
 mod counting;
 mod definition;
 mod described;
+mod dither;
 mod fields;
 mod fmu;
 mod foreign;
@@ -45,8 +46,8 @@ use octant_base::failing::{Failing, FailureKind};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 pub use octant_sample::Epoch;
-use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_trajectory::Comparison;
 
 /// End of the name of a measured reference's account.
@@ -73,6 +74,11 @@ pub trait Source {
     /// Returns whether the truth at the last epoch is, but for its time, that at the epoch before;
     /// `Some(false)`: it may differ, and costs more than a sample. `None`: this isn't known without it.
     fn truth_stands(&self) -> Option<bool> {
+        None
+    }
+
+    /// Returns the running integral of the noise in the samples so far, as far as the source knows it.
+    fn known_noise(&self) -> Option<NoiseIntegral> {
         None
     }
 

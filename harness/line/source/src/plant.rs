@@ -3,8 +3,8 @@
 use super::{Epoch, Source, SourceError};
 use octant_plant::config::PlantConfig;
 use octant_plant::{ComparedPlant, Plant, PlantConfigError, Truth};
-use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 
 /// The simulated instrument, for a fixed number of samples.
 #[derive(Clone, Debug)]
@@ -56,6 +56,10 @@ impl Source for PlantSource {
     #[inline]
     fn truth_stands(&self) -> Option<bool> {
         Some(self.plant().stands())
+    }
+
+    fn known_noise(&self) -> Option<NoiseIntegral> {
+        Some(self.plant().white_noise())
     }
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {

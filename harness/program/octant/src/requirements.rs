@@ -12,6 +12,7 @@ use octant_requirements::Imported;
 use octant_requirements::exchange::{self, ExchangeError};
 use octant_verdict::Verdict;
 use octant_verdict::file::Checker as _;
+use octant_verdict::measures::unasked;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -93,6 +94,10 @@ fn check(path: &Path, mapping: Option<&Path>) -> Result<Verdict, Failure> {
         count("inspection"),
         count("open")
     ))?;
+    let checks: Vec<_> = all.iter().filter_map(|requirement| requirement.check()).collect();
+    for kind in unasked(checks.iter().map(|check| check.measure.as_str())) {
+        note!("octant: {}: {}", path.display(), kind.sentence());
+    }
     // A requirement without a stated verification can't be shown, and one that is missing neither.
     let is_whole = count("open") == 0 && doubts(&imported) == 0;
     Ok(if is_whole { Verdict::Pass } else { Verdict::Inconclusive })

@@ -23,6 +23,7 @@ pub mod discrepancies;
 mod drift;
 pub mod fault_picture;
 pub mod filtered;
+mod followed;
 mod gimbals;
 mod heading;
 pub mod innovations;

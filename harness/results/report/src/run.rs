@@ -7,6 +7,7 @@ use super::calibration::calibration;
 use super::certificate;
 use super::counterfactual::counterfactual;
 use super::drift::drift;
+use super::followed::followed;
 use super::gimbals::gimbals;
 use super::heading::heading;
 use super::inputs::inputs;
@@ -22,6 +23,7 @@ use octant_evidence::discrepancy;
 use octant_score::summary::{CalibrationScore, HeightChannel, NavigationScore, Summary};
 use octant_score::work::duration;
 use octant_verdict::Verdict;
+use octant_verdict::measures::unasked;
 
 /// Renders the report as one HTML file.
 #[must_use]
@@ -31,13 +33,14 @@ pub fn render(data: &ReportData) -> String {
         Section::new(
             "requirements",
             "Requirements",
-            html! { (requirements(data)) (planned_and_done(summary)) },
+            html! { (requirements(data)) (lacking(summary)) (planned_and_done(summary)) },
         ),
         Section::new("inputs", "Inputs", inputs(summary)),
         Section::new("faults", "Faults", faults(summary)),
         Section::new("effects", "What the faults did", counterfactual(data)),
         Section::new("heading", "Heading test", heading(summary)),
         Section::new("navigation", "Navigation", drift(data)),
+        Section::new("followed", "Whether it followed its samples", followed(summary)),
         Section::new("alignment", "Alignment", alignment(summary, &data.units)),
         Section::new("calibration", "Calibrated parameters", calibration(data)),
         Section::new("noise", "Noise at rest", allan(summary)),
@@ -230,6 +233,18 @@ fn figures(summary: &Summary, units: &DisplayUnits) -> Markup {
                         other_calibration.and_then(|o| o.worst_normalized_error)))
                 }
             }
+        }
+    }
+}
+
+/// Names the kinds of requirements that the run's lack; empty for a solution, which states no standard deviations.
+fn lacking(summary: &Summary) -> Markup {
+    let measures = summary.requirements.iter().map(|requirement| requirement.measure.as_str());
+    let kinds = unasked(measures);
+    html! {
+        @if summary.calibration.is_some() && !kinds.is_empty() {
+            p.hint { "The requirements ask less than a unit under test can get wrong:" }
+            ul { @for kind in kinds { li.hint { (kind.sentence()) "." } } }
         }
     }
 }

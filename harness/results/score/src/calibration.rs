@@ -36,6 +36,9 @@ pub struct CalibrationScore {
     pub nees: BTreeMap<String, f64>,
     /// Largest |error| / σ over all estimated parameters.
     pub worst_normalized_error: Option<f64>,
+    /// Least gain of the parameters that were to be estimated; left out where one of them is unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least_gain: Option<f64>,
     /// Reason for which the core refused its own calibration; null if it didn't.
     pub refused: Option<String>,
     /// What that means, the likely causes with their evidence, and what to try, a line each. Empty for a published
@@ -108,6 +111,9 @@ pub struct ParameterScore {
     pub estimate: f64,
     /// 1σ; null if the parameter was not estimated.
     pub sigma: Option<f64>,
+    /// Standard deviation before the calibration over that after it; left out where either is unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
     /// Estimate minus truth.
     pub error: Option<f64>,
     /// Error divided by σ.

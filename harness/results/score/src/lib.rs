@@ -30,6 +30,7 @@ pub mod floor;
 mod gaps;
 pub mod heading_output;
 pub mod health;
+pub mod information;
 pub mod judge;
 pub mod junit;
 mod maxima;

@@ -28,6 +28,7 @@ pub fn score(
                 r#true: truth.map(|t| t[i] / unit),
                 estimate: estimate[i] / unit,
                 sigma: sigma_si.map(|s| s / unit),
+                gain: None,
                 error: error_si.map(|e| e / unit),
                 normalized: error_si.zip(sigma_si).map(|(e, s)| e / s),
                 unit: group.unit().to_owned(),
@@ -35,6 +36,26 @@ pub fn score(
             (NAMES[i].to_owned(), score)
         })
         .collect()
+}
+
+/// Sets the gain of every parameter with a σ over its prior, SI.
+pub fn set_gains(
+    parameters: &mut BTreeMap<String, ParameterScore>,
+    prior: &[f64; PARAMETER_COUNT],
+) {
+    for (i, name) in NAMES.into_iter().enumerate() {
+        if let Some(score) = parameters.get_mut(name) {
+            let before = prior[i] / ParameterGroup::of(i).si_per_unit();
+            score.gain = score.sigma.map(|sigma| before / sigma);
+        }
+    }
+}
+
+/// Least gain of the planned parameters; `None` if none is planned, or if one of them has none.
+#[must_use]
+pub fn least_gain(parameters: &BTreeMap<String, ParameterScore>, planned: &[&str]) -> Option<f64> {
+    let gains = planned.iter().map(|name| parameters.get(*name).and_then(|p| p.gain));
+    gains.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::min)
 }
 
 /// Scores the further states that the core has, in the units for users; none, if it has none. Those that are considered
@@ -55,6 +76,7 @@ pub fn score_further(
                 r#true: truth.map(|truth| truth / unit),
                 estimate: estimate / unit,
                 sigma: Some(sigma / unit),
+                gain: None,
                 error: error.map(|error| error / unit),
                 normalized: error.map(|error| error / sigma),
                 unit: group.unit().to_owned(),

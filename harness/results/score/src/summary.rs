@@ -9,6 +9,7 @@ pub use super::navigation::{
     ErrorScore, GapScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
 };
 
+pub use octant_followed::{Followed, FollowedScore, KnownNoise};
 pub use octant_heading::score::{HeadingScore, HeadingTest, RunUpScore};
 
 pub use octant_recorder::event::{
@@ -87,6 +88,9 @@ pub struct Summary {
     pub calibration: Option<CalibrationScore>,
     /// Navigation; null if the run had none, or no truth to compare it with.
     pub navigation: Option<NavigationScore>,
+    /// Whether the navigation followed its samples; left out without a navigation that is compared with a truth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub followed: Option<FollowedScore>,
     /// Heading test; left out if the run had none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heading: Option<HeadingScore>,
@@ -94,6 +98,10 @@ pub struct Summary {
     /// twin.
     #[serde(default)]
     pub counterfactual: Option<Counterfactual>,
+    /// Reports of the core in the run without faults: in the run itself if it has none, else in its twin; left out where
+    /// neither ran.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub false_alarms: Option<u64>,
     /// Second method of the same run: same instrument, same noise.
     pub baseline: Option<BaselineMethod>,
     /// Physical references for the scores.
@@ -256,6 +264,9 @@ pub struct BaselineMethod {
     pub calibration: Option<CalibrationScore>,
     /// Navigation.
     pub navigation: Option<NavigationScore>,
+    /// Whether the navigation followed its samples; left out without a navigation that is compared with a truth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub followed: Option<FollowedScore>,
     /// Effect of the faults on it, compared with its own twin.
     #[serde(default)]
     pub counterfactual: Option<Counterfactual>,

@@ -15,6 +15,7 @@ mod every_answer;
 mod gaps;
 mod heading_output;
 mod health;
+mod information;
 mod junit;
 mod numerics;
 mod parameters;

@@ -1,6 +1,6 @@
 //! The list of measures, and the check of paths.
 
-use octant_verdict::measures::{MeasureNeed, all, check};
+use octant_verdict::measures::{MeasureNeed, all, check, unasked};
 use std::collections::BTreeSet;
 
 /// Every path that the check accepts, found by asking it for the keys of each place.
@@ -23,9 +23,9 @@ fn all_that_is_listed_is_accepted_and_all_that_is_accepted_is_listed() {
     assert_eq!(listed, found);
     let once: BTreeSet<&String> = listed.iter().collect();
     assert_eq!(once.len(), listed.len());
-    // 30 parameters with five numbers, of two methods, are 300 of them.
+    // 30 parameters with six numbers, of two methods, are 360 of them.
     let parameters = |path: &&String| path.contains("calibration.parameters.");
-    assert_eq!(listed.iter().filter(parameters).count(), 300);
+    assert_eq!(listed.iter().filter(parameters).count(), 360);
 }
 
 #[test]
@@ -83,7 +83,8 @@ fn units_are_those_of_the_names() {
                 Some(unit) => unit.to_owned(),
                 None => continue,
             },
-            _ => unreachable!(),
+            [_] => "1".to_owned(),
+            [] => unreachable!(),
         };
         assert_eq!(entry.unit, expected, "{}", entry.measure);
         checked += 1;
@@ -104,4 +105,28 @@ fn a_path_that_leads_nowhere_is_told_with_the_keys_there() {
     let beyond = error("calibration.nis_mean.max");
     assert_eq!((beyond.place.as_str(), beyond.keys.len()), ("calibration.nis_mean", 0));
     assert_eq!(error("nothing").place, "the summary");
+}
+
+#[test]
+fn a_set_that_lacks_a_kind_is_told_which() {
+    let lacks = |measures: &[&str]| -> Vec<&str> {
+        unasked(measures.iter().copied()).iter().map(|kind| kind.measure).collect()
+    };
+    let radial = "navigation.radial_error_nmi.max";
+    let all = ["calibration.worst_normalized_error", "calibration.least_gain", "false_alarms"];
+    assert_eq!(lacks(&[radial]), all);
+    assert_eq!(lacks(&[radial, all[0], all[1], all[2]]), [""; 0]);
+    let others = [
+        "calibration.nees.gyro_bias",
+        "|calibration.parameters.g_zz.sigma|",
+        "calibration.health.rejected",
+    ];
+    assert_eq!(lacks(&others), [""; 0]);
+    assert_eq!(lacks(&[radial, "calibration.parameters.g_zz.gain"]), [all[0], all[2]]);
+    // A heading test, and what isn't tested, have no calibration to ask about.
+    assert_eq!(lacks(&["heading.settling_time_min"]), [""; 0]);
+    assert_eq!(lacks(&[]), [""; 0]);
+    for measure in all {
+        assert!(check(measure).is_ok());
+    }
 }

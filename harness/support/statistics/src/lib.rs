@@ -2,6 +2,7 @@
 //!
 //! - [`mod@allan`] has the Allan variance of a sensor at rest, and the noise terms that describe it
 //! - [`sample`] has the figures of a sample, [`position`] those of position errors: CEP50, R95, drms
+//! - [`chi_squared`] has the distribution of χ²
 //! - [`radius`] has the distance of a normal error in the plane
 //! - [`cluster`] finds the independent draws among rows, the unit of inference
 //! - [`quantile`] gives distribution-free bounds, [`proportion`] bounds of a pass probability
@@ -16,6 +17,7 @@
 //! Every function names its source. Nothing in this crate depends on scenarios or files.
 
 pub mod allan;
+pub mod chi_squared;
 pub mod cluster;
 pub mod convergence;
 pub mod draw;

@@ -12,7 +12,7 @@ use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
 use octant_recorder::{EpochFrame, Extra, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Innovation, NavigationCovariance, Output, Truth};
+use octant_sample::{Innovation, NavigationCovariance, NoiseIntegral, Output, Truth};
 use octant_scenario::resolve::DrawnValues;
 use octant_source::{Epoch, Source};
 use std::sync::LazyLock;
@@ -127,13 +127,15 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Takes an answer; asks for the truth where it is needed, and whether it stands since the answer before.
+    /// Takes an answer; asks for the truth where it is needed, for the known noise with it, and whether the truth stands
+    /// since the answer before.
     #[inline(always)]
     pub(crate) fn take(
         &mut self,
         answered: &Answered<'_>,
         stands: impl FnOnce() -> Option<bool>,
         truth: impl FnOnce() -> Option<Truth>,
+        noise: impl FnOnce() -> Option<NoiseIntegral>,
     ) -> Result<(), RecorderError> {
         let Answered { step, sent, altered, output, measured, estimate } = *answered;
         let (recorder, observers) = (&mut self.recorder, &mut self.observers);
@@ -172,6 +174,7 @@ impl<'a> Records<'a> {
                 recorder.extra(&Extra::Truth(truth));
             }
             if observed {
+                observers.noise(noise());
                 observers.truth(output, &truth);
             } else if between {
                 observers.truth_between(output, &truth, stood);
@@ -253,7 +256,8 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Records<'_> {
         let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean.source, sent));
         let (measured, estimate) = (&measured, estimate.as_ref());
         let answered = Answered { step, sent, altered: !untouched, output, measured, estimate };
-        self.take(&answered, || source.truth_stands(), || source.truth())?;
+        let (stands, truth) = (|| source.truth_stands(), || source.truth());
+        self.take(&answered, stands, truth, || source.known_noise())?;
         let misbehaved = self.observers.answers.misbehaved.is_some();
         Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })
     }

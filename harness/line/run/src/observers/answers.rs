@@ -98,6 +98,12 @@ impl Answers {
         true
     }
 
+    /// Returns whether the answers are to be computed from the samples of the run.
+    #[must_use]
+    pub(crate) fn has_to_follow(&self) -> bool {
+        self.follow.has_to()
+    }
+
     /// Describes the answers that don't follow the unit's input.
     #[must_use]
     pub(crate) fn do_not_follow(&self) -> Vec<String> {

@@ -179,6 +179,12 @@ impl RunFollower {
         self.renewed += 1;
     }
 
+    /// Returns whether the solution has to follow the samples.
+    #[must_use]
+    pub(super) fn has_to(&self) -> bool {
+        self.told.contains(&true)
+    }
+
     /// Number of steps of the solution where a correction was at work.
     #[must_use]
     pub fn steps(&self) -> u64 {
@@ -229,7 +235,7 @@ impl RunFollower {
 
 /// Returns whether an answer is of free navigation: no measurement and no recovery corrects it.
 #[inline]
-fn is_free(output: &Output) -> bool {
+pub(super) fn is_free(output: &Output) -> bool {
     output.nis.is_nan() && !output.health.contains(Health::RECOVERING)
 }
 

@@ -19,6 +19,7 @@ mod fit;
 pub mod follow;
 pub mod gimbals;
 pub mod heading;
+pub mod information;
 pub mod measurements;
 pub mod moments;
 mod solution;
@@ -32,12 +33,16 @@ use self::drift::NavigationDrift;
 use self::filtered::FilteredSeries;
 use self::gimbals::GimbalSeries;
 use self::heading::HeadingReadings;
+use self::information::CalibrationInformation;
 use self::measurements::Measurements;
 use self::moments::{Moment, Moments};
 use self::solution::{SolutionErrors, attitude_error, errors, position_error, velocity_error};
 use octant_endpoint::Tells;
+use octant_followed::{Compared, Follower, Told};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, Innovation, Mode, NavigationCovariance, Output, Truth};
+use octant_sample::{
+    DeviceTime, Innovation, Mode, NavigationCovariance, NoiseIntegral, Output, Truth,
+};
 use octant_score::trace::RunTrace;
 use octant_source::Epoch;
 use std::collections::BTreeMap;
@@ -67,6 +72,11 @@ pub struct Observers {
     pub moments: Moments,
     /// The last navigation against the truth.
     pub drift: NavigationDrift,
+    /// The navigation against the noise of its samples.
+    pub followed: Follower,
+    known_noise: Option<NoiseIntegral>,
+    /// What the samples of the calibration can say of the parameters.
+    pub information: CalibrationInformation,
     /// The parameters.
     pub convergence: Convergence,
     /// Health, NIS and innovations.
@@ -142,6 +152,9 @@ impl Observers {
             moments: Moments::new(tells, plan.standing_rad(), plan.prior().copied()),
             done: Done::towards(plan),
             drift: NavigationDrift::of_gaps(gaps_s),
+            followed: Follower::new(quantities(tells)),
+            known_noise: None,
+            information: CalibrationInformation::default(),
             convergence: Convergence::over(calibration_s),
             measurements: Measurements::new(),
             gimbals: GimbalSeries::default(),
@@ -168,6 +181,7 @@ impl Observers {
         self.tells.position = told(TELLS_POSITION);
         self.tells.tilt = told(TELLS_TILT);
         self.moments.unit_tells(self.tells);
+        self.followed = Follower::new(quantities(self.tells));
     }
 
     /// Takes the source's epoch, before faults alter it.
@@ -192,6 +206,7 @@ impl Observers {
     pub fn restarted(&mut self) {
         self.answers.restarted();
         self.done.restarted();
+        self.followed.interrupt();
         if let Some(heading) = &mut self.heading {
             let last_ns = self.now.source.map_or(self.now.last_ns, |time| time.ns);
             heading.switched_on(last_ns);
@@ -209,8 +224,12 @@ impl Observers {
         self.done.epoch(now_ns, output);
         if altered {
             self.answers.altered();
+            self.followed.interrupt();
         } else {
             self.answers.follow(now_ns, sent, output);
+            if !follow::is_free(output) {
+                self.followed.interrupt();
+            }
         }
         let due = self.epoch(output);
         if due {
@@ -288,6 +307,7 @@ impl Observers {
             self.now.next_score_ns = now_ns;
         }
         self.moments.comes(moment);
+        self.followed.interrupt();
         self.now.mode = output.mode;
     }
 
@@ -316,6 +336,7 @@ impl Observers {
     pub(crate) fn lost(&mut self) {
         self.drift.lost();
         self.answers.altered();
+        self.followed.interrupt();
     }
 
     /// Takes the truth at an answer that asked for it in [`Self::between`].
@@ -327,6 +348,11 @@ impl Observers {
         }
     }
 
+    /// Takes the noise in the samples up to the truth that follows.
+    pub fn noise(&mut self, noise: Option<NoiseIntegral>) {
+        self.known_noise = noise;
+    }
+
     /// Takes the truth of the last epoch.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
         if let Some(heading) = &mut self.heading {
@@ -334,6 +360,15 @@ impl Observers {
             heading.read(self.tells, now_ns, output, truth);
         }
         self.moments.truth(output, truth);
+        if output.mode == Mode::Calibrating {
+            let now_ns = self.now.source.unwrap_or(output.device_time).ns;
+            self.information.truth(now_ns, truth);
+        }
+        if output.mode == Mode::Navigating {
+            let (answer, noise) = (&output.navigation, self.known_noise.take());
+            let now_ns = self.now.source.unwrap_or(output.device_time).ns;
+            self.followed.compare(&Compared { now_ns, answer, truth, noise });
+        }
         let attitude_error = attitude_error(self.tells, output, truth);
         let velocity_error_mps = velocity_error(self.tells, output, truth);
         if let Some(filtered) = &mut self.charts.filtered {
@@ -361,4 +396,10 @@ impl Observers {
     pub(crate) fn elapsed_s(&self) -> f64 {
         self.now.last_ns as f64 * 1e-9
     }
+}
+
+/// Quantities of a solution whose errors are tested for the noise of the samples.
+fn quantities(tells: Tells) -> Told {
+    let Tells { attitude, tilt, velocity, position, .. } = tells;
+    Told { attitude: attitude && tilt, velocity, position }
 }

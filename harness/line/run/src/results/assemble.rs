@@ -137,6 +137,13 @@ pub fn assemble_with(
         timing: timing(scenario, &primary),
     };
     let counterfactual = difference(scenario, &primary);
+    let false_alarms = match &counterfactual {
+        Some(counterfactual) => Some(counterfactual.false_alarms),
+        None => {
+            let health = &primary.observed.measurements.health;
+            scenario.faults.is_empty().then(|| health.episodes().len() as u64 + health.unlisted())
+        }
+    };
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let baseline_solution = baseline
         .as_ref()
@@ -180,6 +187,7 @@ pub fn assemble_with(
         alignment: primary.alignment,
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
+        followed: primary.followed.take(),
         heading: primary.observed.heading.as_ref().map(|readings| readings.score()),
         baseline: baseline.map(|run| BaselineMethod {
             planned: Some(run.observed.done.planned()),
@@ -188,11 +196,13 @@ pub fn assemble_with(
             alignment: run.alignment,
             calibration: run.calibration,
             navigation: run.navigation,
+            followed: run.followed,
             counterfactual: baseline_counterfactual,
             stream_hash: run.recorder.stream_hash,
             faults: results(&run.receipts),
         }),
         reference: Some(references),
+        false_alarms,
         counterfactual,
         allan_deviation: primary.observed.charts.at_rest.take().and_then(|at_rest| {
             AllanDeviation::of(&at_rest.record(), instrument_noise(scenario).as_ref()).map(Box::new)
@@ -347,6 +357,14 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         facts.retain(|(name, _)| of_solution.contains(&name.as_str()));
     }
     facts.extend(scenario.source.fact().map(|(name, fact)| (name.to_owned(), fact)));
+    if let Some(part) = scenario.dither {
+        let grows = 100.0 * (libm::hypot(1.0, part) - 1.0);
+        let fact = format!(
+            "{} of the random walks, from the seed: the noise of the samples grows by {grows:.1} %",
+            number::plain(part, 4)
+        );
+        facts.push(("dither".to_owned(), fact));
+    }
     if let Some(drive) = &scenario.drive {
         let range = |axis: TableAxis| {
             let limits = drive.settings.limits.of(axis);
@@ -387,11 +405,18 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
     for fault in &summary.faults {
         line(format!("  {}", fault.sentence()));
     }
-    let primary = (&summary.method, &summary.alignment, &summary.calibration, &summary.navigation);
+    let primary = (
+        &summary.method,
+        &summary.alignment,
+        &summary.calibration,
+        &summary.navigation,
+        &summary.followed,
+    );
     let baseline = summary.baseline.as_ref();
-    let methods = std::iter::once(primary)
-        .chain(baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation)));
-    for (label, alignment, calibration, navigation) in methods {
+    let methods = std::iter::once(primary).chain(
+        baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation, &b.followed)),
+    );
+    for (label, alignment, calibration, navigation, followed) in methods {
         line(format!("{label}, seed {}", summary.seed));
         alignment.iter().map(|alignment| alignment_line(alignment, units)).for_each(&mut line);
         if let Some(calibration) = calibration {
@@ -420,6 +445,7 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
         if let Some(n) = navigation {
             line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
             navigation_lines(n, units).into_iter().for_each(&mut line);
+            followed.iter().for_each(|score| line(format!("    samples   {}", score.line())));
         }
     }
     summary.heading.iter().flat_map(heading_lines).for_each(&mut line);

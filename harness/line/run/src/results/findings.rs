@@ -12,8 +12,9 @@ use octant_calibration::config::{Estimator, SwayNoise};
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
 use octant_scenario::{CalibrationSpec, Method, Realtime, Scenario};
+use octant_score::information::{Estimated, against_bound};
 use octant_score::judge::Finding;
-use octant_score::summary::PacingRecord;
+use octant_score::summary::{FollowedScore, PacingRecord};
 use octant_score::work::{RunPart, duration};
 use octant_source::OF_REFERENCE;
 use octant_verdict::Verdict;
@@ -142,9 +143,11 @@ fn of_unit(scenario: &Scenario, run: &MethodRun, method: Method, place: &str) ->
         return findings;
     }
     let mut reasons = run.observed.answers.do_not_follow();
+    reasons.extend(run.followed.as_ref().and_then(FollowedScore::doubt).map(str::to_owned));
     let plan = scenario.calibration_of(method);
     reasons.extend(plan.and_then(|plan| not_estimated(scenario, plan, run)));
     reasons.extend(plan.and_then(|plan| not_white(plan, run)));
+    reasons.extend(plan.and_then(|plan| too_good(scenario, plan, run)));
     let inconclusive = |reason| Finding::of_unit(Verdict::Inconclusive, format!("{reason}{place}"));
     findings.extend(reasons.into_iter().map(inconclusive));
     findings
@@ -195,6 +198,20 @@ fn not_estimated(scenario: &Scenario, plan: &CalibrationSpec, run: &MethodRun) -
         "the calibration doesn't follow the samples: not one parameter moved from where it began"
             .to_owned()
     })
+}
+
+/// Says that the errors of the parameters are smaller than the noise of the samples allows.
+fn too_good(scenario: &Scenario, plan: &CalibrationSpec, run: &MethodRun) -> Option<String> {
+    run.calibration.as_ref().filter(|c| c.refused.is_none())?;
+    let planned = planned_of(plan);
+    let estimated = Estimated {
+        truth: run.truth.as_ref()?,
+        initial: &scenario.initial_parameters,
+        estimate: &run.observed.convergence.last?.parameters,
+        planned: &planned,
+        random_walks: [scenario.imu.angle_random_walk, scenario.imu.velocity_random_walk],
+    };
+    against_bound(&run.observed.information.sum, &estimated)?.doubt()
 }
 
 /// Says that the sway of a ship isn't white, where an accepted calibration takes it for white noise.

@@ -13,9 +13,12 @@ use octant_recorder::{Event, RecorderError, RecorderSummary, concluded};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Parameters};
 use octant_scenario::{CalibrationSpec, Method, Scenario};
-use octant_score::parameters::{nees, score, score_further, worst_normalized_error};
+use octant_score::parameters::{
+    least_gain, nees, score, score_further, set_gains, worst_normalized_error,
+};
 use octant_score::summary::{
-    AlignmentResult, CalibrationScore, CaseRestScore, HeightChannel, NavigationScore, SolutionScore,
+    AlignmentResult, CalibrationScore, CaseRestScore, FollowedScore, HeightChannel, KnownNoise,
+    NavigationScore, SolutionScore,
 };
 use std::sync::Arc;
 
@@ -34,6 +37,8 @@ pub struct MethodRun {
     pub calibration: Option<CalibrationScore>,
     /// Result of the navigation.
     pub navigation: Option<NavigationScore>,
+    /// Whether the navigation followed its samples.
+    pub followed: Option<FollowedScore>,
     /// Summary of the recorder.
     pub recorder: RecorderSummary,
     /// What was observed of the run.
@@ -96,7 +101,11 @@ impl MethodRun {
         let done = observers.done.work();
         let calibration = scenario.calibration_of(method).map(|plan| {
             let known = truth.map(|draws| &draws.parameters);
-            let parameters = score(known, &estimate.parameters, &estimate.sigma);
+            let mut parameters = score(known, &estimate.parameters, &estimate.sigma);
+            if let Estimator::Kalman(kalman) = &plan.estimator {
+                let prior = std::array::from_fn(|i| kalman.prior.of(ParameterGroup::of(i)));
+                set_gains(&mut parameters, &prior);
+            }
             let all = truth.map(|draws| scenario.true_further(draws));
             let further = score_further(all.as_ref(), conclusion.further.as_ref());
             let of_core = &observers.measurements.health;
@@ -115,6 +124,7 @@ impl MethodRun {
                 nis_expected: conclusion.nis_expected,
                 nees: nees(&parameters, &further),
                 worst_normalized_error: worst_normalized_error(&parameters, &planned_of(plan)),
+                least_gain: least_gain(&parameters, &planned_of(plan)),
                 parameters,
                 further,
                 refused: refused.clone(),
@@ -129,6 +139,14 @@ impl MethodRun {
             Some(drift) => Some(drift.finish(HeightChannel::Held).map_err(RunError::from)?),
             None => None,
         };
+        let follows = observers.answers.has_to_follow() && navigation.is_some();
+        let followed = follows.then(|| {
+            observers.followed.score(if scenario.dither.is_some() {
+                KnownNoise::Dither
+            } else {
+                KnownNoise::Simulated
+            })
+        });
         let recorder = match recorder.finish() {
             Ok(summary) => summary,
             // The end of the recording found no space: the file is readable up to there, as after any
@@ -146,6 +164,7 @@ impl MethodRun {
             alignment: aligned::alignment(scenario, &observers),
             calibration,
             navigation,
+            followed,
             recorder,
             truth: truth.map(|draws| draws.parameters),
             table: conclusion.table,

@@ -12,7 +12,7 @@ use octant_faults::Receipt;
 use octant_fmu_bind::OpenedFmus;
 use octant_sample::disturbance::Disturbed;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{GimbalCommand, Output, Parameters, Truth};
+use octant_sample::{GimbalCommand, NoiseIntegral, Output, Parameters, Truth};
 use octant_scenario::{Method, Scenario};
 use octant_source::{Epoch, PlantSource, Source, SourceError};
 use std::cell::RefCell;
@@ -97,6 +97,10 @@ impl Source for WatchedSource {
     #[inline]
     fn truth_stands(&self) -> Option<bool> {
         self.source.truth_stands()
+    }
+
+    fn known_noise(&self) -> Option<NoiseIntegral> {
+        self.source.known_noise()
     }
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {

@@ -15,8 +15,8 @@ use octant_plant::config::{CaseAttitude, Dockside, Motion, PlantConfig, PlantSit
 use octant_plant::course::{Course, CoursePoint};
 use octant_plant::{ComparedPlant, PlantConfigError, Truth};
 use octant_recorder::event::BenchRecord;
-use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, NoiseIntegral};
 use octant_scenario::Fmu;
 use octant_scenario::channel::{Channel, case};
 use std::collections::VecDeque;
@@ -322,6 +322,10 @@ impl Source for MovedPlant {
     #[inline]
     fn truth_stands(&self) -> Option<bool> {
         Some(self.plant.plant().stands())
+    }
+
+    fn known_noise(&self) -> Option<NoiseIntegral> {
+        Some(self.plant.plant().white_noise())
     }
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {

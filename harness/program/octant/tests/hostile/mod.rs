@@ -4,6 +4,7 @@
 //! The unit is the core itself, behind a port, with its answers altered: without an attack it
 //! passes, which is the honest counterpart of each.
 
+mod adaptive;
 mod answers;
 mod bench;
 mod fmu;

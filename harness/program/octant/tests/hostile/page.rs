@@ -1,6 +1,6 @@
 //! Page of all attacks, generated from the tests themselves.
 
-use super::{Row, answers, bench, fmu, honest, sessions};
+use super::{Row, adaptive, answers, bench, fmu, honest, sessions};
 use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use std::path::Path;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/qualification/attacks.md");
 
 fn rows() -> Vec<Row> {
-    let parts = [answers::rows(), sessions::rows(), fmu::rows(), bench::rows()];
+    let parts = [answers::rows(), adaptive::rows(), sessions::rows(), fmu::rows(), bench::rows()];
     parts.concat()
 }
 
@@ -38,7 +38,9 @@ fn page() -> String {
         text,
         "{}; none ends in pass.\n\n\
          The unit is the core itself with its answers altered, in 20 s of calibration through a move and 10 s of\n\
-         navigation at 50 Hz. Without the alteration it passes, over each port: the honest neighbour of each.\n",
+         navigation at 50 Hz. Without the alteration it passes, over each port: the honest neighbour of each. Those that adapt\n\
+         navigate for 20 min at 8 Hz after 10 min of calibration, and answer with what they know: most are found by the\n\
+         [noise of their samples](../followed.md), the others by requirements that the honest neighbour keeps.\n",
         counted.join(", ")
     );
     let mut groups: Vec<&str> = Vec::new();
@@ -77,8 +79,13 @@ fn page() -> String {
              Where the true position moves, answers between two seconds are compared with it only from a step of \
              0.6 m, 0.05 m/s\nor 2 mrad on: a unit that goes away and comes back within a second in smaller steps, each \
              of which fits its samples, isn't seen.\n\
-             Uncertainties that are too large make every normalized error small: require the uncertainties \
-             too\n(`calibration.parameters.gyro_bias_x.sigma`).\n";
+             Uncertainties that are too large make every normalized error small: require the uncertainties, or the \
+             gain, too\n(`calibration.parameters.gyro_bias_x.sigma`, `calibration.least_gain`).\n\
+             A unit that knows the site, integrates the noise of its samples alone and adds it to the site answers as one \
+             does that\nnavigates without a drift: its [slope](../followed.md) is 1. The limits of its errors are kept \
+             rightly, and its alignment and\nits calibration are tested elsewhere.\n\
+             A unit that hides in white noise of its own isn't tested, and passes where `followed.velocity.sigma` isn't \
+             required.\n";
     text
 }
 

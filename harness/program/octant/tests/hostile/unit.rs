@@ -198,8 +198,12 @@ fn bridge(stop: &Arc<AtomicBool>) -> (String, String, std::thread::JoinHandle<()
 
 /// Parses the scenario of these tests with more at its end.
 pub fn scenario(more: &str) -> Scenario {
-    let text = format!("{SCENARIO}{more}");
-    Scenario::parse(&text, "hostile.toml", Path::new(""), &[]).unwrap()
+    scenario_of(&format!("{SCENARIO}{more}"))
+}
+
+/// Parses a scenario.
+pub fn scenario_of(text: &str) -> Scenario {
+    Scenario::parse(text, "hostile.toml", Path::new(""), &[]).unwrap()
 }
 
 /// Returns the summary of a run against a unit.

@@ -31,6 +31,8 @@ pub(crate) fn summary() -> Summary {
         planned: None,
         done: None,
         faults: vec![],
+        followed: None,
+        false_alarms: None,
         heading: None,
         method: "eight".to_owned(),
         calibration: Some(CalibrationScore {
@@ -46,6 +48,7 @@ pub(crate) fn summary() -> Summary {
             rest: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
+            least_gain: None,
             refused: None,
             refusal_explained: Vec::new(),
             health: HealthCounts::default(),

@@ -4,7 +4,7 @@ use super::columns::{column, temperature_unit, time_unit};
 use super::definition::{Bounds, Kind};
 use super::fmu::SourceFmuKeys;
 use super::table::{
-    At, Of, boolean, choice, integer, keys, numbers, si, table, text, time, within,
+    At, Of, boolean, choice, integer, keys, number, numbers, si, table, text, time, within,
 };
 use super::trajectory::{ReferenceTrajectoryKeys, SolutionKeys};
 use crate::quantity::UnitDimension;
@@ -60,6 +60,8 @@ keys! {
         trajectory: At<Option<ReferenceTrajectoryKeys>>
             = table::<ReferenceTrajectoryKeys>(), absent("needed by solution:FILE"),
             "The reference trajectory that a solution is scored against.";
+        dither: At<Option<f64>> = number(Bounds::Within(0.05, 1.0, "between 0.05 and 1")), absent("nothing is added"),
+            "Noise that the harness adds to the samples of an instrument whose own noise isn't known, from the seed, in parts of imu.angle_random_walk and imu.velocity_random_walk: shows whether the unit follows its samples. Their noise grows by the root of 1 + dither².";
         live: Option<SourceLiveKeys>
             = table::<SourceLiveKeys>(),
             derived("serial, udp, tcp, can and slcan: the defaults of its keys"),

@@ -99,6 +99,8 @@ pub struct Scenario {
     pub record: RecordSpec,
     /// Source of the samples.
     pub source: SourceSpec,
+    /// Noise that is added to the samples, in parts of the random walks.
+    pub dither: Option<f64>,
     /// Reference of a source that brings none of its own.
     pub reference: Option<ReferenceSpec>,
     /// Place of the core.

@@ -88,6 +88,7 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
         decision: requirement::decision(&keys.decision)?,
         equipment: requirement::equipment(keys.equipment.as_deref().unwrap_or_default())?,
         record: record(&keys.record, sample_period_ns)?,
+        dither: source::dither(&keys.source, &source)?,
         source,
         reference: None,
         endpoint,

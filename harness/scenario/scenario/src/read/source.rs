@@ -43,6 +43,23 @@ pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<SourceSpe
     }
 }
 
+/// Reads the noise that is added to the samples, which are those of an instrument whose noise isn't known.
+pub(super) fn dither(keys: &SourceKeys, source: &SourceSpec) -> Result<Option<f64>, Problem> {
+    match source {
+        _ if keys.dither.is_none() => {}
+        SourceSpec::Solution(_) => {
+            return Err(keys.dither.problem("a solution has no samples: expected no dither"));
+        }
+        source if source.has_plant() => {
+            return Err(keys.dither.problem(
+                "the noise of a simulated instrument is known without it: expected no dither",
+            ));
+        }
+        _ => {}
+    }
+    Ok(*keys.dither)
+}
+
 fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextMapping, Problem> {
     let column = |key: &At<RecordedColumn>| match &**key {
         RecordedColumn::Name(name) if !keys.header => Err(key.problem(format!(

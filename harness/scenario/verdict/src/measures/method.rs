@@ -74,6 +74,16 @@ pub(super) const CALIBRATION: Place = table(
                 magnitude(Unit::Sigma, "largest |error| over standard deviation of a parameter"),
             ),
         ),
+        (
+            "least_gain",
+            with(
+                &[Sigma],
+                magnitude(
+                    Unit::One,
+                    "least standard deviation before over that after the calibration, of the parameters that were to be estimated",
+                ),
+            ),
+        ),
         ("health", table("reports of the core", &[], HEALTH)),
     ],
 );
@@ -85,6 +95,13 @@ const PARAMETER: Place = table(
         ("true", with(&[Truth], signed(Unit::Parameter, "true value"))),
         ("estimate", signed(Unit::Parameter, "estimate")),
         ("sigma", with(&[Sigma], magnitude(Unit::Parameter, "standard deviation of the estimate"))),
+        (
+            "gain",
+            with(
+                &[Sigma],
+                magnitude(Unit::One, "standard deviation before over that after the calibration"),
+            ),
+        ),
         ("error", with(&[Truth], signed(Unit::Parameter, "error, estimate − true"))),
         ("normalized", with(&[Truth, Sigma], signed(Unit::Sigma, "error over standard deviation"))),
     ],

@@ -8,8 +8,10 @@ mod method;
 mod need;
 mod place;
 mod tree;
+mod unasked;
 
 pub use need::MeasureNeed;
+pub use unasked::{Unasked, unasked};
 
 use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 use octant_sample::parameters::{NAMES, ParameterGroup};

@@ -31,11 +31,13 @@ pub enum MeasureNeed {
     Clock,
     /// A device whose clock can be compared.
     DeviceClock,
+    /// Noise that the bench knows to be in the samples.
+    KnownNoise,
 }
 
 impl MeasureNeed {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Calibration,
         Self::Further,
         Self::Navigation,
@@ -49,6 +51,7 @@ impl MeasureNeed {
         Self::Twin,
         Self::Clock,
         Self::DeviceClock,
+        Self::KnownNoise,
     ];
 
     /// Name, as in lists of measures.
@@ -68,6 +71,7 @@ impl MeasureNeed {
             Self::Twin => "twin",
             Self::Clock => "clock",
             Self::DeviceClock => "device-clock",
+            Self::KnownNoise => "known-noise",
         }
     }
 
@@ -93,6 +97,9 @@ impl MeasureNeed {
             Self::Twin => "faults and the twin without them: [[faults]], without --no-twin",
             Self::Clock => "a run by the clock: realtime.pace = \"clock\"",
             Self::DeviceClock => "a device on a port, by the clock, that exchanges its time",
+            Self::KnownNoise => {
+                "noise that the bench knows: a simulated instrument, or source.dither; half an hour of navigation"
+            }
         }
     }
 }

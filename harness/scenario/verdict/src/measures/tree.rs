@@ -3,7 +3,7 @@
 use super::heading::HEADING;
 use super::method::{ALIGNMENT, CALIBRATION, NAVIGATION};
 use super::need::MeasureNeed::{
-    Baseline, Calibration, Clock, DeviceClock, Navigation, Sigma, Truth, Twin,
+    Baseline, Calibration, Clock, DeviceClock, KnownNoise, Navigation, Sigma, Truth, Twin,
 };
 use super::place::{
     ARCMIN, G_DEPENDENT, Keys, MICROSECOND, MPS, NMI, Names, Place, SECOND, Unit, count, magnitude,
@@ -18,8 +18,10 @@ pub(super) static SUMMARY: Place = table(
         ("alignment", ALIGNMENT),
         ("calibration", CALIBRATION),
         ("navigation", NAVIGATION),
+        ("followed", FOLLOWED),
         ("heading", HEADING),
         ("counterfactual", COUNTERFACTUAL),
+        ("false_alarms", count("reports of the core in the run without faults, or in the twin")),
         (
             "baseline",
             table(
@@ -29,6 +31,7 @@ pub(super) static SUMMARY: Place = table(
                     ("alignment", ALIGNMENT),
                     ("calibration", CALIBRATION),
                     ("navigation", NAVIGATION),
+                    ("followed", FOLLOWED),
                     ("counterfactual", COUNTERFACTUAL),
                     ("planned", PLANNED),
                     ("done", DONE),
@@ -41,6 +44,25 @@ pub(super) static SUMMARY: Place = table(
         ("done", DONE),
     ],
 );
+
+const FOLLOWED: Place = table(
+    "errors on the known noise of the samples",
+    &[Navigation, Truth, KnownNoise],
+    &[
+        ("attitude", table("attitude", &[], REGRESSION)),
+        ("velocity", table("velocity", &[], REGRESSION)),
+    ],
+);
+
+const REGRESSION: Keys = &[
+    ("slope", signed(Unit::One, "slope, expected 1")),
+    ("sigma", magnitude(Unit::One, "standard deviation of the slope")),
+    ("information", magnitude(Unit::One, "information on the slope, 1/σ²")),
+    ("residual", magnitude(Unit::One, "rms of the rest over rms of the known noise")),
+    ("window_s", magnitude(SECOND, "length of the windows")),
+    ("lag_s", magnitude(SECOND, "lag of the answers behind the samples")),
+    ("windows", count("number of windows")),
+];
 
 const COUNTERFACTUAL: Place = table(
     "effect of the faults",

@@ -4,7 +4,7 @@ use crate::bench::records::Measured;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Output, Truth};
+use octant_sample::{NoiseIntegral, Output, Truth};
 use octant_source::Epoch;
 
 /// One message. Placed into a ring that has room for the largest: a box would be an allocation on
@@ -59,7 +59,15 @@ pub(super) struct Answer {
     pub(super) measured: Measured,
     /// Parameters, if they are new.
     pub(super) estimate: Option<ParameterEstimate>,
+    pub(super) known: Known,
+}
+
+/// What the source knows at an answer.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Known {
     pub(super) truth: Option<Truth>,
     /// Whether the truth is that at the answer before, as the source says.
     pub(super) stands: Option<bool>,
+    /// Noise in the samples so far, as far as the source knows it.
+    pub(super) noise: Option<NoiseIntegral>,
 }

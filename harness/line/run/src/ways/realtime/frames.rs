@@ -1,6 +1,6 @@
 //! Frames of a run by the clock, on the real-time thread.
 
-use super::entry::{Answer, Broke, Entry};
+use super::entry::{Answer, Broke, Entry, Known};
 use crate::bench::attended::Attended;
 use crate::bench::ended::{Ended, RunError, over};
 use crate::bench::records::Measured;
@@ -12,7 +12,7 @@ use octant_faults::station::Occurrence;
 use octant_realtime::clock::{MonotonicTime, now};
 use octant_realtime::lateness::LatenessHistogram;
 use octant_realtime::pace::FrameClock;
-use octant_sample::{Output, Truth};
+use octant_sample::Output;
 use octant_source::{Epoch, Source};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -169,12 +169,12 @@ impl<'a> Frames<'a> {
         step: InStep<'_>,
         sent: &Epoch,
         output: &Output,
-        (truth, stands): (Option<Truth>, Option<bool>),
+        known: Known,
     ) {
         let is_new = output.parameters_revision != self.revision;
         let estimate = is_new.then(|| endpoint.parameters());
         let measured = Measured::of(endpoint, output);
-        let answer = Answer { output: *output, measured, estimate, truth, stands };
+        let answer = Answer { output: *output, measured, estimate, known };
         let is_in = self.lay(match step {
             InStep::First(clean) => Entry::Frame {
                 source: *clean.source,
@@ -282,7 +282,9 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
         sent: &Epoch,
         output: &Output,
     ) -> Result<Option<Ended>, RunError> {
-        self.pass_on(endpoint, step, sent, output, (source.truth(), source.truth_stands()));
+        let (truth, stands) = (source.truth(), source.truth_stands());
+        let known = Known { truth, stands, noise: source.known_noise() };
+        self.pass_on(endpoint, step, sent, output, known);
         Ok(over(output))
     }
 
@@ -322,7 +324,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
                 return Err(self.silent(endpoint));
             };
             let step = InStep::Further { step_ns: owed.step_ns };
-            self.pass_on(endpoint, step, &owed.epoch, output, (None, None));
+            self.pass_on(endpoint, step, &owed.epoch, output, Known::default());
             if let Some(ended) = over(output) {
                 return Ok(ended);
             }

@@ -1,6 +1,6 @@
 //! Records and observes the messages of the real-time thread.
 
-use super::entry::{Answer, Entry};
+use super::entry::{Answer, Entry, Known};
 use crate::bench::records::{Answered, Records};
 use crate::bench::steps::{Clean, InStep};
 use octant_recorder::event::Pace;
@@ -77,8 +77,9 @@ fn answered(
     answer: &Answer,
     records: &mut Records<'_>,
 ) -> Result<(), RecorderError> {
-    let Answer { output, measured, estimate, truth, stands } = answer;
+    let Answer { output, measured, estimate, known } = answer;
+    let Known { truth, stands, noise } = *known;
     let estimate = estimate.as_ref();
     let answered = Answered { step, sent, altered, output, measured, estimate };
-    records.take(&answered, || *stands, || *truth)
+    records.take(&answered, || stands, || truth, || noise)
 }
