@@ -1,5 +1,6 @@
 //! A source whose kind is known only from the scenario.
 
+use super::dither::Dither;
 use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
 use super::known::KnownReference;
@@ -19,6 +20,7 @@ use octant_trajectory::Comparison;
 pub struct AnySource {
     kind: Kind,
     reference: Option<AddedReference>,
+    dither: Option<Dither>,
 }
 
 /// A reference that the source doesn't bring.
@@ -43,7 +45,7 @@ macro_rules! of {
     ($($from:ty => $kind:ident),*) => {
         $(impl From<$from> for AnySource {
             fn from(source: $from) -> Self {
-                Self { kind: Kind::$kind(Box::new(source)), reference: None }
+                Self { kind: Kind::$kind(Box::new(source)), reference: None, dither: None }
             }
         })*
     };
@@ -71,7 +73,7 @@ macro_rules! each {
 /// A source that a host program made.
 impl From<Box<dyn Source + Send>> for AnySource {
     fn from(source: Box<dyn Source + Send>) -> Self {
-        Self { kind: Kind::Foreign(source), reference: None }
+        Self { kind: Kind::Foreign(source), reference: None, dither: None }
     }
 }
 
@@ -81,11 +83,20 @@ impl AnySource {
     pub(super) fn with_reference(self, reference: Option<AddedReference>) -> Self {
         Self { reference, ..self }
     }
+
+    /// Adds a dither to its samples.
+    #[must_use]
+    pub fn with_dither(self, dither: Option<Dither>) -> Self {
+        Self { dither, ..self }
+    }
 }
 
 impl Source for AnySource {
     fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
         let more = each!(&mut self.kind, source => source.next(command, epoch))?;
+        if let Some(dither) = self.dither.filter(|_| more) {
+            dither.add(&mut epoch.sample);
+        }
         let stamp = epoch.sample.device_time;
         match &mut self.reference {
             None => {}

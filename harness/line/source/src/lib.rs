@@ -6,6 +6,7 @@ pub mod configure;
 mod counting;
 mod definition;
 mod described;
+pub mod dither;
 mod fields;
 mod fmu;
 mod foreign;

@@ -20,6 +20,7 @@ mod numerics;
 mod parameters;
 mod run_series;
 mod series;
+mod sessions;
 mod trace;
 mod verdicts;
 mod work;

@@ -13,6 +13,7 @@ mod page;
 mod program;
 mod sessions;
 mod studies;
+mod twins;
 mod unit;
 
 use octant_verdict::Verdict;

@@ -1,6 +1,6 @@
 //! Page of all attacks, generated from the tests themselves.
 
-use super::{Row, answers, bench, fmu, honest, sessions};
+use super::{Row, answers, bench, fmu, honest, sessions, twins};
 use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use std::path::Path;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/qualification/attacks.md");
 
 fn rows() -> Vec<Row> {
-    let parts = [answers::rows(), sessions::rows(), fmu::rows(), bench::rows()];
+    let parts = [answers::rows(), sessions::rows(), twins::rows(), fmu::rows(), bench::rows()];
     parts.concat()
 }
 
@@ -77,6 +77,10 @@ fn page() -> String {
              Where the true position moves, answers between two seconds are compared with it only from a step of \
              0.6 m, 0.05 m/s\nor 2 mrad on: a unit that goes away and comes back within a second in smaller steps, each \
              of which fits its samples, isn't seen.\n\
+             A unit that knows the noise of both sessions beforehand can add to remembered answers what the dither of \
+             the other\nsession would have moved them by; and one that repeats its parameters with a jitter, and \
+             navigates otherwise as it should,\nhas an effect as small as that jitter: require the drift of the \
+             navigation too\n(`counterfactual.navigation.radial_max_nmi`).\n\
              Uncertainties that are too large make every normalized error small: require the uncertainties \
              too\n(`calibration.parameters.gyro_bias_x.sigma`).\n";
     text
