@@ -24,6 +24,8 @@ const CORRELATED: f64 = 1.25;
 /// Longest navigation after which the dither may be below the resolution of a position, s, and the coarsest such resolution, rad.
 const POSITION_AFTER_S: u64 = 600;
 const POSITION_RESOLUTION_RAD: f64 = 1e-9;
+/// Factor of σ without the faults over σ with them beyond which it isn't that of the same unit: faults open σ.
+const WIDENED: f64 = 2.0;
 /// End of each sentence about a memory.
 const REMEMBERS: &str = "A unit that remembers the other session shows no effect of a fault";
 
@@ -75,18 +77,41 @@ pub struct Sessions {
     /// Answers that are the same in both sessions, to the last bit, though the samples differ.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repeated: Vec<String>,
+    /// Parameter whose σ the session without faults states much larger than the one with them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub widened: Option<WidenedSigma>,
+}
+
+/// A parameter that is stated less certain without the faults than with them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WidenedSigma {
+    /// Its name.
+    pub parameter: String,
+    /// σ of the twin over that of the run with the faults.
+    pub factor: f64,
+}
+
+/// A parameter that both sessions published.
+#[derive(Clone, Copy, Debug)]
+pub struct PublishedPair<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Estimate with the faults and without them.
+    pub estimates: [f64; 2],
+    /// Standard deviations, in the unit of the parameter.
+    pub sigmas: [f64; 2],
 }
 
 impl Sessions {
-    /// Compares two sessions; `onset_s` is the time at which the first fault set in. `estimates` are the parameters of both
-    /// in the same order, where both published some.
+    /// Compares two sessions; `onset_s` is the time at which the first fault set in. `published` are the parameters of
+    /// both, where both published some.
     #[must_use]
     pub fn compare(
         first: FirstSession,
         dither_counts: i32,
         [faulted, twin]: [&[SessionPoint]; 2],
         onset_s: Option<f64>,
-        estimates: &[[f64; 2]],
+        published: &[PublishedPair<'_>],
     ) -> Self {
         let onset_s = onset_s.unwrap_or(f64::INFINITY);
         let pairs = pairs(faulted, twin);
@@ -95,13 +120,20 @@ impl Sessions {
         let resolution_rad = resolution_rad(faulted).max(resolution_rad(twin));
         let share = |pairs: &[Pair]| share(pairs, resolution_rad);
         let mut repeated = Vec::new();
-        if are_repeated(estimates) {
+        if are_repeated(published) {
             repeated.push("parameters".to_owned());
         }
         if position_is_repeated(faulted, twin) {
             repeated.push("positions".to_owned());
         }
-        Self { first, dither_counts, before: share(before), after: share(after), repeated }
+        Self {
+            first,
+            dither_counts,
+            before: share(before),
+            after: share(after),
+            repeated,
+            widened: widened(published),
+        }
     }
 
     /// Sentence about a unit whose answers don't contain the dither of their session; `None` if they do, or weren't tested.
@@ -128,10 +160,21 @@ impl Sessions {
 }
 
 /// Returns whether both sessions have the same estimates, to the last bit, and more digits than a coarse unit tells.
-fn are_repeated(estimates: &[[f64; 2]]) -> bool {
-    let is_fine = |[one, _]: &[f64; 2]| f64::from(*one as f32) != *one;
-    let is_same = |[one, other]: &[f64; 2]| one.to_bits() == other.to_bits();
-    estimates.iter().any(is_fine) && estimates.iter().all(is_same)
+fn are_repeated(published: &[PublishedPair<'_>]) -> bool {
+    let is_fine =
+        |pair: &PublishedPair<'_>| f64::from(pair.estimates[0] as f32) != pair.estimates[0];
+    let is_same = |pair: &PublishedPair<'_>| {
+        let [one, other] = pair.estimates.map(f64::to_bits);
+        one == other
+    };
+    published.iter().any(is_fine) && published.iter().all(is_same)
+}
+
+/// Finds the parameter that the session without faults states most less certain than the one with them.
+fn widened(published: &[PublishedPair<'_>]) -> Option<WidenedSigma> {
+    let of = |pair: &PublishedPair<'_>| (pair.name.to_owned(), pair.sigmas[1] / pair.sigmas[0]);
+    let (parameter, factor) = published.iter().map(of).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (factor > WIDENED).then_some(WidenedSigma { parameter, factor })
 }
 
 /// Returns whether both sessions navigated long and have the same positions, to the last bit, of more digits than a coarse unit

@@ -1,6 +1,6 @@
 //! Two sessions of one unit, and the dither that one of them has.
 
-use octant_score::sessions::{FirstSession, SessionPoint, Sessions};
+use octant_score::sessions::{FirstSession, PublishedPair, SessionPoint, Sessions};
 
 const SECONDS: u64 = 400;
 
@@ -91,9 +91,19 @@ fn answers_too_coarse_for_the_dither_are_not_tested() {
 #[test]
 fn parameters_and_positions_that_are_the_same_to_the_last_bit_are_repeated() {
     let (faulted, twin) = (session(false, 1.0, |_, _| 0.0), session(true, 1.0, |_, _| 0.0));
-    let with = |estimates: &[[f64; 2]]| {
-        Sessions::compare(FirstSession::Faulted, 33, [&faulted, &twin], None, estimates).memory()
+    let published = |estimates: &[[f64; 2]], sigmas| {
+        let pair = |estimates: &[f64; 2]| PublishedPair {
+            name: "gyro_bias_x",
+            estimates: *estimates,
+            sigmas,
+        };
+        let published: Vec<PublishedPair<'_>> = estimates.iter().map(pair).collect();
+        Sessions::compare(FirstSession::Faulted, 33, [&faulted, &twin], None, &published).memory()
     };
+    let with = |estimates: &[[f64; 2]]| published(estimates, [1.0, 1.0]);
+    let told = published(&[[0.1, 0.2]], [1.0, 1000.0]).unwrap();
+    assert!(told.starts_with("the unit states gyro_bias_x with 1000.0 times"), "{told}");
+    assert_eq!(published(&[[0.1, 0.2]], [1.0, 0.5]), None, "the fault opens σ");
     let told = with(&[[0.1, 0.1], [0.5, 0.5]]).unwrap();
     assert!(told.starts_with("the parameters of the unit are the same"), "{told}");
     assert_eq!(with(&[[0.1, 0.1], [0.5, 0.500_001]]), None);

@@ -6,7 +6,7 @@ use crate::bench::ended::Ended;
 use octant_faults::Receipt;
 use octant_scenario::Scenario;
 use octant_score::counterfactual::{Counterfactual, CounterfactualSide, counterfactual};
-use octant_score::sessions::{FirstSession, Sessions};
+use octant_score::sessions::{FirstSession, PublishedPair, Sessions};
 use octant_score::work::duration;
 
 /// Returns the effects of a run's faults, if it has a twin and both came to their end.
@@ -48,20 +48,23 @@ fn sessions(run: &MethodRun, twin: &MethodRun, onset_s: Option<f64>) -> Option<S
     let first = if faulted.session.is_first { FirstSession::Faulted } else { FirstSession::Twin };
     let dither_counts = clean.session.dither?.amplitude_counts();
     let points: [&[_]; 2] = [&faulted.points, &clean.points];
-    Some(Sessions::compare(first, dither_counts, points, onset_s, &estimates(run, twin)))
+    Some(Sessions::compare(first, dither_counts, points, onset_s, &published(run, twin)))
 }
 
-/// Parameters that both runs estimated.
-fn estimates(run: &MethodRun, twin: &MethodRun) -> Vec<[f64; 2]> {
+/// Parameters that both runs published.
+fn published<'a>(run: &'a MethodRun, twin: &'a MethodRun) -> Vec<PublishedPair<'a>> {
     let (Some(one), Some(other)) = (&run.calibration, &twin.calibration) else {
         return Vec::new();
     };
     if one.refused.is_some() || other.refused.is_some() {
         return Vec::new();
     }
-    let both = one.parameters.iter().filter(|(_, score)| score.sigma.is_some());
-    both.filter_map(|(name, score)| Some([score.estimate, other.parameters.get(name)?.estimate]))
-        .collect()
+    let both = one.parameters.iter().filter_map(|(name, score)| {
+        let twin = other.parameters.get(name)?;
+        let (estimates, sigmas) = ([score.estimate, twin.estimate], [score.sigma?, twin.sigma?]);
+        Some(PublishedPair { name, estimates, sigmas })
+    });
+    both.collect()
 }
 
 fn side(run: &MethodRun) -> Option<CounterfactualSide<'_>> {

@@ -6,6 +6,7 @@
 
 mod answers;
 mod bench;
+mod campaigns;
 mod fmu;
 mod honest;
 mod numbers;

@@ -1,6 +1,6 @@
 //! Page of all attacks, generated from the tests themselves.
 
-use super::{Row, answers, bench, fmu, honest, sessions, twins};
+use super::{Row, answers, bench, campaigns, fmu, honest, sessions, twins};
 use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,14 @@ use std::path::Path;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/qualification/attacks.md");
 
 fn rows() -> Vec<Row> {
-    let parts = [answers::rows(), sessions::rows(), twins::rows(), fmu::rows(), bench::rows()];
+    let parts = [
+        answers::rows(),
+        sessions::rows(),
+        twins::rows(),
+        fmu::rows(),
+        bench::rows(),
+        campaigns::rows(),
+    ];
     parts.concat()
 }
 
@@ -48,9 +55,10 @@ fn page() -> String {
         }
     }
     for group in groups {
+        let who = if group == "campaign" { "Somebody who" } else { "A unit that" };
         let _ = writeln!(
             text,
-            "## {group}\n\n| A unit that … | over | ends as | because of |\n|---|---|---|---|"
+            "## {group}\n\n| {who} … | over | ends as | because of |\n|---|---|---|---|"
         );
         for row in rows.iter().filter(|row| row.group == group) {
             let because = row.ends.because.replace('|', "\\|");

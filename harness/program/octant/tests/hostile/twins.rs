@@ -1,7 +1,7 @@
 //! Attacks on the comparison of a faulted run with its twin: units that remember one session and repeat it in the other.
 
 use super::unit::{Over, SCENARIO, check, serve};
-use super::{Ends, Row, open};
+use super::{Ends, Row, fails, open};
 use octant_base::control::Control;
 use octant_endpoint::ServedCore;
 use octant_fmu_bind::OpenedFmus;
@@ -9,7 +9,7 @@ use octant_link::device::Steps;
 use octant_run::many::{Beginnings, OneOfMany, judge_each};
 use octant_run::{Prepared, StreamKeeping, assemble};
 use octant_sample::parameters::PARAMETER_COUNT;
-use octant_sample::{Aiding, Output, Parameters, Sample};
+use octant_sample::{Aiding, Health, Mode, Output, Parameters, Sample};
 use octant_scenario::Scenario;
 use octant_score::sessions::FirstSession;
 use octant_score::summary::Summary;
@@ -29,6 +29,16 @@ id = \"SHIFT\"
 text = \"No parameter moves.\"
 measure = \"counterfactual.worst_shift_sigma\"
 limit = 100
+[[requirements]]
+id = \"SEEN\"
+text = \"The fault is noticed.\"
+measure = \"counterfactual.undetected\"
+limit = 0
+[[requirements]]
+id = \"QUIET\"
+text = \"No false alarms.\"
+measure = \"counterfactual.false_alarms\"
+limit = 0
 ";
 
 /// Gyro counts between two sessions that only a fault makes.
@@ -47,6 +57,12 @@ enum Memory {
     FromTheFault,
     /// Repeats the parameters alone.
     Parameters,
+    /// Finds that no fault comes, and states uncertainties that are far too large.
+    Wide,
+    /// Finds that no fault comes, and refuses its calibration.
+    Refuses,
+    /// Reports a fault all of the time, in each session.
+    Alarmed,
 }
 
 /// What the unit kept of a step.
@@ -95,6 +111,9 @@ impl Steps for Remembering {
         }
         self.core.step(sample, aiding, output);
         self.step += 1;
+        if self.memory == Memory::Alarmed {
+            output.health |= Health::GYRO_STUCK;
+        }
         if self.sessions == 1 {
             let parameters = self.core.parameters();
             self.first.push(Kept { sample: *sample, output: *output, parameters });
@@ -108,12 +127,13 @@ impl Steps for Remembering {
         }
         let jitter = 1e-10 * (self.step as f64 * 12.9898).sin();
         match (self.memory, self.repeated()) {
-            (Memory::None | Memory::Parameters, _) | (_, None) => {}
+            (Memory::Refuses, _) if output.mode == Mode::Navigating => output.mode = Mode::Refused,
             (Memory::All | Memory::FromTheFault, Some(kept)) => *output = kept.output,
             (Memory::Jitter, Some(kept)) => {
                 *output = kept.output;
                 output.navigation.q_nb[1] += jitter;
             }
+            _ => {}
         }
     }
 
@@ -124,7 +144,8 @@ impl Steps for Remembering {
     fn parameters(&self) -> (Parameters, [f64; PARAMETER_COUNT]) {
         let own = self.core.parameters();
         match (self.memory, self.repeated()) {
-            (Memory::None, _) | (_, None) => own,
+            (Memory::None | Memory::Refuses | Memory::Alarmed, _) | (_, None) => own,
+            (Memory::Wide, _) => (own.0, own.1.map(|sigma| 1000.0 * sigma)),
             (Memory::Jitter | Memory::FromTheFault, Some(kept)) => {
                 let (parameters, sigma) = &kept.parameters;
                 let values = parameters.to_array().map(|value| value * (1.0 + 1e-6));
@@ -167,6 +188,10 @@ fn run(over: Over, seed: u64, memory: Memory) -> Summary {
 
 const REPEATS: Ends = open("don't differ as their samples do");
 const SAME: Ends = open("the parameters of the unit are the same with the faults and without them");
+const WIDE: Ends = open("times the uncertainty without the faults that it has with them");
+const REFUSED: Ends =
+    open("met against a twin without faults that isn't whole: its calibration was refused");
+const ALARMED: Ends = fails("QUIET: counterfactual.false_alarms is 1");
 
 /// Returns the rows of the table.
 pub fn rows() -> Vec<Row> {
@@ -179,6 +204,9 @@ pub fn rows() -> Vec<Row> {
         row("repeats them with jitter in attitude and parameters", REPEATS),
         row("repeats them from the first sample on that differs by more than noise", REPEATS),
         row("repeats the parameters of its first session alone", SAME),
+        row("finds that no fault comes, and states uncertainties a thousand times too large", WIDE),
+        row("finds that no fault comes, and refuses its calibration", REFUSED),
+        row("reports a fault all of the time, with one and without", ALARMED),
     ]
 }
 
@@ -231,4 +259,17 @@ twins! {
     repeats_with_jitter: 1, Memory::Jitter;
     repeats_from_the_fault: 2, Memory::FromTheFault;
     repeats_parameters: 3, Memory::Parameters;
+    reports_all_of_the_time: 6, Memory::Alarmed;
+}
+
+/// These act in the session that comes second, which has to be the twin.
+#[test]
+fn what_is_done_where_no_fault_comes_is_seen() {
+    let (faulted_first, _) = orders()[0];
+    for (row, memory) in [(4, Memory::Wide), (5, Memory::Refuses)] {
+        let row = &rows()[row];
+        for over in [Over::Serial, Over::Udp] {
+            check(row.about, &row.ends, Ok(run(over, faulted_first, memory)));
+        }
+    }
 }
