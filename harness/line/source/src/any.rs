@@ -1,6 +1,7 @@
 //! A source whose kind is known only from the scenario.
 
 use super::dither::Dither;
+use super::session_dither::SessionDither;
 use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
 use super::known::KnownReference;
@@ -21,6 +22,7 @@ pub struct AnySource {
     kind: Kind,
     reference: Option<AddedReference>,
     dither: Option<Box<Dither>>,
+    session: Option<SessionDither>,
 }
 
 /// A reference that the source doesn't bring.
@@ -45,7 +47,7 @@ macro_rules! of {
     ($($from:ty => $kind:ident),*) => {
         $(impl From<$from> for AnySource {
             fn from(source: $from) -> Self {
-                Self { kind: Kind::$kind(Box::new(source)), reference: None, dither: None }
+                Self { kind: Kind::$kind(Box::new(source)), reference: None, dither: None, session: None }
             }
         })*
     };
@@ -73,11 +75,17 @@ macro_rules! each {
 /// A source that a host program made.
 impl From<Box<dyn Source + Send>> for AnySource {
     fn from(source: Box<dyn Source + Send>) -> Self {
-        Self { kind: Kind::Foreign(source), reference: None, dither: None }
+        Self { kind: Kind::Foreign(source), reference: None, dither: None, session: None }
     }
 }
 
 impl AnySource {
+    /// Adds the dither of a session to its samples.
+    #[must_use]
+    pub fn of_session(self, session: Option<SessionDither>) -> Self {
+        Self { session, ..self }
+    }
+
     /// Adds noise to the samples.
     #[must_use]
     pub(super) fn with_dither(self, dither: Option<Dither>) -> Self {
@@ -103,6 +111,9 @@ impl Source for AnySource {
             }
             Some(AddedReference::Measured(measured)) => measured.came()?,
             Some(AddedReference::Known(_)) => {}
+        }
+        if let Some(session) = self.session.filter(|_| more) {
+            session.add(&mut epoch.sample);
         }
         if let Some(dither) = self.dither.as_mut().filter(|_| more) {
             dither.add(&mut epoch.sample);

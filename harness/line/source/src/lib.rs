@@ -25,6 +25,7 @@ mod reference_text;
 mod replay;
 mod rows;
 mod sampled;
+pub mod session_dither;
 mod solution;
 mod temperature;
 mod text;

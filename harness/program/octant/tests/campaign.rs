@@ -476,7 +476,6 @@ fn a_campaign_that_contradicts_itself_is_refused_with_its_place() {
 #[test]
 fn a_requirement_that_no_case_can_meet_is_refused() {
     for (measure, limit, words) in [
-        ("counterfactual.worst_shift_sigma", "3", "cases of a campaign run no twin without faults"),
         (
             "navigation.marks.24h.radial_nmi",
             "\"1 nmi\"",
@@ -496,6 +495,22 @@ fn a_requirement_that_no_case_can_meet_is_refused() {
         let error = bench.refusal();
         assert!(error.contains(words) && error.contains("no case can have"), "{measure}: {error}");
     }
+    // Measures of a twin: each case has a fault.
+    let bench = Bench::new(CAMPAIGN);
+    let shift = SCENARIO
+        .replace("navigation.radial_error_nmi.max", "counterfactual.worst_shift_sigma")
+        .replace("\"10 nmi\"", "3");
+    std::fs::write(bench.at("short.toml"), &shift).unwrap();
+    let error = bench.refusal();
+    let words = "which not every case can have: factor \"fault\" injects no fault in some of them";
+    assert!(error.contains(words), "{error}");
+    let without = shift.split("[[faults]]").next().unwrap();
+    let requirements = &shift[shift.find("[[requirements]]").unwrap()..];
+    std::fs::write(bench.at("short.toml"), format!("{without}{requirements}")).unwrap();
+    let campaign = CAMPAIGN.split("[[factors]]").next().unwrap();
+    std::fs::write(bench.at("campaign.toml"), campaign).unwrap();
+    let error = bench.refusal();
+    assert!(error.contains("the scenario has no faults"), "{error}");
     let seeds = CAMPAIGN
         .replace("key = \"site.latitude\"", "key = \"seed\"")
         .replace("[\"0 deg\", \"60 deg\"]", "[1, 2]");

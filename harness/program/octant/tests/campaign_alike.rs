@@ -6,6 +6,8 @@ use octant_campaign::execute::alike::{MOST, groups, run_alike};
 use octant_campaign::execute::case;
 use octant_campaign::plan::{Case, Plan};
 use octant_campaign::store::CampaignResults;
+use octant_fmu_bind::OpenedFmus;
+use octant_run::{Prepared, assemble};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -67,9 +69,32 @@ key = \"faults.spike-1.amplitude\"
 values = [\"50 deg/h\", \"500 deg/h\"]
 ";
 
+/// Asks for a twin of each method.
+const OF_TWINS: &str = "[[requirements]]
+id = \"SHIFT-1\"
+text = \"No parameter moves.\"
+measure = \"counterfactual.worst_shift_sigma\"
+limit = 1000
+[[requirements]]
+id = \"SHIFT-2\"
+text = \"Nor in the second method.\"
+measure = \"baseline.counterfactual.worst_shift_sigma\"
+limit = 1000
+";
+
 fn plan(folder: &Path) -> Plan {
-    std::fs::write(folder.join("alike.toml"), SCENARIO).unwrap();
-    std::fs::write(folder.join("campaign.toml"), CAMPAIGN).unwrap();
+    plan_of(folder, SCENARIO, CAMPAIGN)
+}
+
+/// A plan whose cases have twins, with several navigations and several faulted cases a draw.
+fn plan_with_twins(folder: &Path) -> Plan {
+    let campaign = CAMPAIGN.replace("faults = [[], ", "faults = [");
+    plan_of(folder, &format!("{SCENARIO}{OF_TWINS}"), &campaign)
+}
+
+fn plan_of(folder: &Path, scenario: &str, campaign: &str) -> Plan {
+    std::fs::write(folder.join("alike.toml"), scenario).unwrap();
+    std::fs::write(folder.join("campaign.toml"), campaign).unwrap();
     Plan::of(&folder.join("campaign.toml")).unwrap()
 }
 
@@ -118,11 +143,49 @@ fn a_case_has_the_result_that_it_has_alone() {
     }
 }
 
+/// The effects of faults are those of a single run with its twin, however many cases share the twin.
+#[test]
+fn a_case_has_the_twin_that_it_has_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = plan_with_twins(folder.path());
+    let cases: Vec<&Case> = plan.cases.iter().collect();
+    let together = groups(&cases, 1).swap_remove(0);
+    let together: Vec<&Case> = together.iter().map(|place| cases[*place]).collect();
+    let planned = plan.planned(together[0]).unwrap();
+    let mut twins = BTreeSet::new();
+    for (case, result) in together.iter().zip(run_alike(planned, &together)) {
+        let result = result.unwrap();
+        let alone = case::run(planned, case, &Control::default()).unwrap();
+        assert_eq!(result.to_json().unwrap(), alone.to_json().unwrap());
+        let summary = result.summary.unwrap();
+        let scenario = planned.scenario(case).unwrap();
+        let prepared = Prepared::of(&scenario, case.seed, true, &OpenedFmus::default()).unwrap();
+        let single = tempfile::tempdir().unwrap();
+        let mut methods = prepared.run(single.path()).unwrap().into_iter();
+        let (primary, baseline) = (methods.next().unwrap(), methods.next());
+        let run = assemble(&scenario, case.seed, primary, baseline).unwrap().summary;
+        assert!(run.counterfactual.is_some());
+        assert_eq!(summary.counterfactual, run.counterfactual);
+        assert_eq!(summary.baseline.unwrap().counterfactual, run.baseline.unwrap().counterfactual);
+        assert_eq!(summary.requirements, run.requirements);
+        twins.insert(summary.counterfactual.unwrap().twin_stream_hash);
+    }
+    assert!(together.len() > 4 && twins.len() == 2, "a twin for each navigation: {twins:?}");
+}
+
 #[test]
 fn the_command_gives_the_same_bytes_both_ways() {
     let folder = tempfile::tempdir().unwrap();
-    let here = folder.path();
-    let plan = plan(here);
+    both_ways(folder.path(), &plan(folder.path()));
+}
+
+#[test]
+fn the_command_gives_the_same_twins_both_ways() {
+    let folder = tempfile::tempdir().unwrap();
+    both_ways(folder.path(), &plan_with_twins(folder.path()));
+}
+
+fn both_ways(here: &Path, plan: &Plan) {
     let [divided, undivided] =
         [("divided", &[][..]), ("undivided", &["--undivided"][..])].map(|(name, options)| {
             plan.write(&here.join(name), false).unwrap();
@@ -130,7 +193,7 @@ fn the_command_gives_the_same_bytes_both_ways() {
             let output = command.current_dir(here).args(options).output().unwrap();
             assert_eq!(output.status.code(), Some(0), "{output:?}");
             let stored = CampaignResults::open(&here.join(name)).unwrap();
-            let json = |case| stored.of_plan(&plan, case).unwrap().unwrap().0.to_json().unwrap();
+            let json = |case| stored.of_plan(plan, case).unwrap().unwrap().0.to_json().unwrap();
             plan.cases.iter().map(json).collect::<Vec<_>>()
         });
     assert_eq!(divided, undivided);

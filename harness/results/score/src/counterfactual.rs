@@ -7,6 +7,7 @@
 use super::calibration::{CalibrationScore, ParameterScore};
 use super::health::{Episode, name};
 use super::navigation::NavigationScore;
+use super::sessions::Sessions;
 use super::trace::RunTrace;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
@@ -63,6 +64,14 @@ pub struct Counterfactual {
     pub false_alarms: u64,
     /// Hash of the twin's stream.
     pub twin_stream_hash: String,
+    /// Reason why the twin is no measure of the effect: its calibration was refused, or it fell short of its plan. Left out
+    /// for a whole one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub twin_lacks: Option<String>,
+    /// What the two sessions show of the memory of a unit in another process or device; left out where the core of this
+    /// process is the unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sessions: Option<Box<Sessions>>,
 }
 
 /// Shift of one parameter.
@@ -109,7 +118,7 @@ pub struct Noticed {
 }
 
 /// Data of one run for the comparison.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct CounterfactualSide<'a> {
     /// Calibration.
     pub calibration: Option<&'a CalibrationScore>,
@@ -123,6 +132,39 @@ pub struct CounterfactualSide<'a> {
     pub stream_hash: &'a str,
     /// Length of the run, s of device time.
     pub elapsed_s: f64,
+    /// Reason why the run isn't whole; `None` for a whole one.
+    pub lacks: Option<String>,
+}
+
+impl Counterfactual {
+    /// Lists the contradictions between its figures, as texts.
+    #[must_use]
+    pub fn contradictions(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let shifts = || self.parameters.values().map(|shift| shift.sigma.abs());
+        if shifts().all(f64::is_finite) && shifts().reduce(f64::max) != self.worst_shift_sigma {
+            found
+                .push("its worst_shift_sigma isn't the largest shift of its parameters".to_owned());
+        }
+        let fired = || self.faults.iter().filter(|fault| fault.onset_s.is_some());
+        let unnoticed = fired().filter(|fault| fault.noticed_by.is_none()).count() as u64;
+        if unnoticed != self.undetected {
+            found.push(format!("its undetected is {}, of its faults {unnoticed}", self.undetected));
+        }
+        if self.faults.iter().filter_map(|f| f.delay_s).reduce(f64::max)
+            != self.detection_delay_max_s
+        {
+            found
+                .push("its detection_delay_max_s isn't the longest delay of its faults".to_owned());
+        }
+        let shifted = self.worst_shift_sigma.is_some_and(|sigma| sigma >= HARMFUL_SHIFT_SIGMA);
+        let drifted = |n: &DriftDifference| n.radial_max_nmi > n.twin_radial_max_nmi;
+        let harmful = shifted || self.navigation.as_ref().is_some_and(drifted);
+        if harmful != self.harmful {
+            found.push(format!("its harmful is {}, its figures give {harmful}", self.harmful));
+        }
+        found
+    }
 }
 
 /// Compares a faulted run with its twin. `onsets` are the faults with the start of the first interval
@@ -184,6 +226,8 @@ pub fn counterfactual(
         missed: harmful && !refused && !unended && unnoticed,
         false_alarms: twin.episodes.len() as u64,
         twin_stream_hash: twin.stream_hash.to_owned(),
+        twin_lacks: twin.lacks.clone(),
+        sessions: None,
     }
 }
 

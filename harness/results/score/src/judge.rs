@@ -238,10 +238,15 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
         Verdict::Pass => match short {
             Some(short) => format!("met as far as it was done ({short})"),
             None if misbehaved => "met until an answer that may not be".to_owned(),
-            None => match hidden.or_else(|| unsettled(summary, &result)) {
-                Some(hidden) => hidden,
-                None => return result,
-            },
+            None => {
+                let nothing = hidden
+                    .or_else(|| unsettled(summary, &result))
+                    .or_else(|| without_effect(summary, &result));
+                match nothing {
+                    Some(reason) => reason,
+                    None => return result,
+                }
+            }
         },
         Verdict::Fail if broke && !stays_broken(summary, &result) => {
             "not judged: the bench failed before its end".to_owned()
@@ -278,6 +283,23 @@ fn hidden(summary: &Summary, result: &RequirementResult) -> Option<String> {
             (!holds).then(|| format!("{met} one may hide a value of up to {}", plain(most)))
         }
     }
+}
+
+/// Reason why a comparison with the twin shows nothing: a fault that never set in, or a twin that isn't whole.
+fn without_effect(summary: &Summary, result: &RequirementResult) -> Option<String> {
+    let path = result.measure.trim_matches('|');
+    let (path, faults, difference) = match (path.strip_prefix("baseline."), &summary.baseline) {
+        (Some(path), Some(baseline)) => (path, &baseline.faults, &baseline.counterfactual),
+        _ => (path, &summary.faults, &summary.counterfactual),
+    };
+    path.strip_prefix("counterfactual.")?;
+    let unfired: Vec<&str> =
+        faults.iter().filter(|fault| !fault.fired).map(|fault| fault.id.as_str()).collect();
+    if !unfired.is_empty() {
+        return Some(format!("met without an effect of {}, which never fired", unfired.join(", ")));
+    }
+    let lacks = difference.as_ref()?.twin_lacks.as_ref()?;
+    Some(format!("met against a twin without faults that isn't whole: {lacks}"))
 }
 
 /// Reason why a settling time below its limit shows nothing: the unit isn't settled, and the time is a lower bound.

@@ -43,6 +43,7 @@ pub mod reference;
 mod regression;
 pub mod run_series;
 pub mod series;
+pub mod sessions;
 pub mod summary;
 pub mod trace;
 pub mod verdict;

@@ -4,6 +4,7 @@
 //! all of which are in the summary too. Every reader derives the verdict again; if it differs, the
 //! summary contradicts itself, and its file is evidence of nothing.
 
+use super::counterfactual::Counterfactual;
 use super::judge::{Finding, FindingSubject, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
@@ -95,6 +96,9 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
             ));
         }
     }
+    let baseline = summary.baseline.iter().filter_map(|b| b.counterfactual.as_ref());
+    let compared = summary.counterfactual.iter().chain(baseline);
+    found.extend(compared.flat_map(Counterfactual::contradictions));
     found.extend(untold(summary).map(|doubt| format!("its findings don't tell that {doubt}")));
     let derived = derive(summary).verdict;
     // Before the verdict `none` existed, a run without requirements passed.

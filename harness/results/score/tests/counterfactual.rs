@@ -60,6 +60,7 @@ fn side<'a>(
         trace,
         stream_hash: "abc",
         elapsed_s: 1000.0,
+        lacks: None,
     }
 }
 

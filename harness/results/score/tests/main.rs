@@ -21,6 +21,7 @@ mod numerics;
 mod parameters;
 mod run_series;
 mod series;
+mod sessions;
 mod trace;
 mod verdicts;
 mod work;

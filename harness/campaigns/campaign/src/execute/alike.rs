@@ -1,16 +1,11 @@
 //! Cases that begin alike: cases of one scenario and seed that differ by their faults and their navigation alone.
 //! Their common beginning, up to the first fault or the end of the calibration, is computed once.
 
-use super::case::{CaseError, CaseResult, hash_of};
+use super::case::{CaseError, CaseResult, run_all};
 use crate::plan::{Case, PlannedScenario};
 use octant_base::control::Control;
-use octant_run::Plan;
-use octant_run::assemble;
-use octant_run::branches::run_branches;
-use octant_run::{MethodError, MethodRun, StreamKeeping};
-use octant_scenario::{Method, Scenario};
+use octant_run::many::Beginnings;
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
 
 /// Most cases that are run together: what an interruption costs stays small, and the processors stay busy
 /// to the end.
@@ -46,41 +41,9 @@ pub fn groups(cases: &[&Case], jobs: usize) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Runs cases of a scenario that begin alike. Each result is that of the case run alone, bit for bit.
+/// Runs cases of a scenario that begin alike, and the twins that their requirements ask for: cases of one navigation have
+/// one twin. Each result is that of the case run alone, bit for bit.
 #[must_use]
 pub fn run_alike(planned: &PlannedScenario, cases: &[&Case]) -> Vec<Result<CaseResult, CaseError>> {
-    let scenarios: Vec<_> = cases.iter().map(|case| planned.scenario(case)).collect();
-    let control = Control::default();
-    let mut plans: Vec<Plan<'_>> = Vec::new();
-    // Case and method of each run.
-    let mut runs: Vec<(usize, Method)> = Vec::new();
-    for (place, scenario) in scenarios.iter().enumerate() {
-        let Ok(scenario) = scenario else { continue };
-        for method in scenario.methods() {
-            let seed = cases[place].seed;
-            let keeping = StreamKeeping::HashAlone;
-            plans.push(Plan::of(scenario, method, seed, keeping, &control));
-            runs.push((place, method));
-        }
-    }
-    let done: Mutex<BTreeMap<(usize, bool), Result<MethodRun, MethodError>>> = Mutex::default();
-    run_branches(&plans, 1, &|index, run| {
-        let (place, method) = runs[index];
-        let key = (place, method == Method::Primary);
-        done.lock().unwrap_or_else(PoisonError::into_inner).insert(key, run);
-    });
-    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let mut outcome = |place: usize, scenario: &Scenario| {
-        let case = cases[place];
-        let Some(primary) = done.remove(&(place, true)) else {
-            return super::case::run(planned, case, &control);
-        };
-        let primary = primary?;
-        let baseline = done.remove(&(place, false)).transpose()?;
-        let summary = assemble(scenario, case.seed, primary, baseline)?.summary;
-        Ok(CaseResult::of(&case.id, Some(hash_of(planned, case)), summary)?)
-    };
-    (scenarios.into_iter().enumerate())
-        .map(|(place, scenario)| outcome(place, &scenario?))
-        .collect()
+    run_all(planned, cases, Beginnings::Shared, &Control::default())
 }

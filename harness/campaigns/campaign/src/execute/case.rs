@@ -7,15 +7,19 @@ use crate::plan::{Case, PlanError, PlannedScenario};
 use crate::store::error::ResultPlace;
 use octant_base::control::Control;
 use octant_base::not_finite;
-use octant_run::MethodError;
-use octant_run::{StreamKeeping, assemble, run_method};
-use octant_scenario::Method;
+use octant_run::many::{Beginnings, ManyError, OneOfMany, judge_each};
+use octant_run::{Run, StreamKeeping};
+use octant_scenario::Scenario;
 use octant_score::rederive;
 use octant_score::summary::{self, Summary};
 use octant_score::verdict::RequirementResult;
+use octant_verdict::measures::{MeasureNeed, needs};
+use octant_verdict::verdict::LimitCheck;
 use octant_verdict::{Comparison, Verdict};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Newest version of the result file, which this program reads.
 pub const SCHEMA: u32 = 3;
@@ -54,15 +58,18 @@ pub enum CaseError {
     /// The scenario isn't the planned one, or isn't valid.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// The case could not be run.
+    /// The case or its twin could not be run.
     #[error(transparent)]
-    Method(#[from] MethodError),
+    Run(#[from] ManyError),
+    /// The run ended without a result: an error in this program.
+    #[error("run the case: it has no result")]
+    NotRun,
     /// The summary can't be written.
     #[error("write the summary: {0}")]
     Json(#[from] serde_json::Error),
 }
 
-/// Runs a case.
+/// Runs a case from its beginning, and from its beginning the twin that its requirements ask for.
 ///
 /// # Errors
 /// If its scenario isn't the planned one, or can't be run.
@@ -71,15 +78,48 @@ pub fn run(
     case: &Case,
     control: &Control,
 ) -> Result<CaseResult, CaseError> {
-    let scenario = planned.scenario(case)?;
-    let one = |method| run_method(&scenario, method, case.seed, StreamKeeping::HashAlone, control);
-    let primary = one(Method::Primary)?;
-    let baseline = match &scenario.baseline {
-        Some(_) => Some(one(Method::Baseline)?),
-        None => None,
+    run_all(planned, &[case], Beginnings::Undivided, control)
+        .pop()
+        .unwrap_or(Err(CaseError::NotRun))
+}
+
+/// Runs cases of a scenario, each with its twin where its requirements ask for one. The results are in the order of the
+/// cases, and the same bits with shared beginnings as without.
+pub(crate) fn run_all(
+    planned: &PlannedScenario,
+    cases: &[&Case],
+    beginnings: Beginnings,
+    control: &Control,
+) -> Vec<Result<CaseResult, CaseError>> {
+    let scenarios: Vec<_> = cases.iter().map(|case| planned.scenario(case)).collect();
+    let (places, all): (Vec<usize>, Vec<OneOfMany<'_>>) = (scenarios.iter().zip(cases).enumerate())
+        .filter_map(|(place, (scenario, case))| {
+            let scenario = scenario.as_ref().ok()?;
+            let (seed, keeping) = (case.seed, StreamKeeping::HashAlone);
+            let twin = needs_twin(scenario.requirements.iter().map(|own| &own.check));
+            Some((place, OneOfMany { scenario, seed, keeping, twin }))
+        })
+        .unzip();
+    let done: Mutex<BTreeMap<usize, Result<Run, ManyError>>> = Mutex::default();
+    judge_each(&all, beginnings, 1, control, &|index, run| {
+        done.lock().unwrap_or_else(PoisonError::into_inner).insert(places[index], run);
+    });
+    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut outcome = |place: usize, scenario: Result<Scenario, PlanError>| {
+        scenario?;
+        let run = done.remove(&place).ok_or(CaseError::NotRun)??;
+        let case = cases[place];
+        Ok(CaseResult::of(&case.id, Some(hash_of(planned, case)), run.summary)?)
     };
-    let summary = assemble(&scenario, case.seed, primary, baseline)?.summary;
-    Ok(CaseResult::of(&case.id, Some(hash_of(planned, case)), summary)?)
+    let scenarios = scenarios.into_iter().enumerate();
+    scenarios.map(|(place, scenario)| outcome(place, scenario)).collect()
+}
+
+/// Returns whether one of some requirements measures the effect of faults, against the run without them.
+pub(crate) fn needs_twin<'a>(checks: impl IntoIterator<Item = &'a LimitCheck>) -> bool {
+    let asks =
+        |check: &LimitCheck| needs(check.measure.trim_matches('|')).contains(&MeasureNeed::Twin);
+    checks.into_iter().any(asks)
 }
 
 /// Computes the BLAKE3 of a summary as JSON with sorted keys and without white space, hexadecimal:

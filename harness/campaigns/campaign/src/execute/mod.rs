@@ -46,7 +46,7 @@ pub struct ExecuteOptions<'a> {
     pub again: bool,
     /// Cases that may be run, and those that are run although they have a result.
     pub selection: CaseSelection,
-    /// True if cases that begin alike are run together.
+    /// True if cases that begin alike are run together, and a case with its twin.
     pub together: bool,
     /// Set to end the execution.
     pub cancel: &'a AtomicBool,
@@ -120,7 +120,8 @@ pub fn execute(
                 0 => groups[task].iter().skip(1).map(|(_, case)| *case).collect(),
                 _ => Vec::new(),
             };
-            let Some(done) = one(worker, case, &known, &next)? else { break };
+            let undivided = !options.together || options.selection.repeats(index);
+            let Some(done) = one(worker, case, &known, &next, undivided)? else { break };
             ended.push(done.differs.clone());
             tell(&ExecutionEvent::Done(CaseDone { index, ..done }));
         }
@@ -154,11 +155,12 @@ fn one(
     case: &Case,
     known: &[String],
     mut alike: &[&Case],
+    undivided: bool,
 ) -> Result<Option<CaseDone>, ExecuteError> {
     let mut by = String::new();
     let mut tries = 0;
     while tries < TRIES {
-        match worker.try_case(case, known, alike)? {
+        match worker.try_case(case, known, alike, undivided)? {
             Tried::Done(done) => return Ok(Some(done)),
             Tried::Cancelled => return Ok(None),
             Tried::InUsed => alike = &[],

@@ -37,6 +37,8 @@ pub struct CaseJob {
     /// Cases of the same scenario that begin alike and that this process is asked for next: they are run together with
     /// this one, and wait here.
     pub alike: Vec<Case>,
+    /// Whether the case and its twin are run from their beginnings.
+    pub undivided: bool,
 }
 
 /// A line on standard output.
@@ -163,7 +165,7 @@ fn outcome(job: &CaseJob, waiting: &mut BTreeMap<String, CaseResult>) -> (CaseRe
     };
     let run = match waiting.remove(&hash_of(&job.scenario, &job.case)) {
         Some(result) => Ok(result),
-        None if job.alike.is_empty() => case::run(&job.scenario, &job.case, &Control::default()),
+        None if job.undivided => case::run(&job.scenario, &job.case, &Control::default()),
         None => together(job, waiting),
     };
     match run {

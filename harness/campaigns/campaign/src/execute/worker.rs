@@ -66,12 +66,14 @@ impl<'a> Worker<'a> {
     }
 
     /// Runs a case. `known` are the results of a case that is run a second time: one that is the same
-    /// isn't stored again. `alike` are those that are tried next and begin alike.
+    /// isn't stored again. `alike` are those that are tried next and begin alike. An `undivided` case doesn't share its
+    /// beginning with its twin.
     pub(crate) fn try_case(
         &mut self,
         case: &Case,
         known: &[String],
         alike: &[&Case],
+        undivided: bool,
     ) -> Result<Tried, ExecuteError> {
         let WorkerOf { plan, folder, program, stem, cancel } = self.of;
         let system =
@@ -84,6 +86,7 @@ impl<'a> Worker<'a> {
             stem: stem.to_owned(),
             known: known.to_vec(),
             alike: alike.iter().map(|case| (*case).clone()).collect(),
+            undivided,
         };
         let job = serde_json::to_vec(&job)
             .map_err(|error| system("describe the case to", error.into()))?;

@@ -2,6 +2,7 @@
 //! manifest.
 
 use super::status;
+use super::twins::{SharedTwins, TwinsSaid};
 use crate::merge::chain;
 use crate::merge::merged;
 use crate::merge::results::TABLES;
@@ -108,14 +109,14 @@ fn derive(
 struct Read {
     /// BLAKE3 over all that count, as in `statistics.json`.
     results: String,
-    /// Limits that aren't those of their scenarios.
+    /// Limits that aren't those of their scenarios, and twins that differ between cases that share them.
     limits: Vec<String>,
     /// First case whose result can't be read, by its place, and the reason.
     error: Option<(usize, String)>,
 }
 
-/// Line of a case that is hashed, and the limits of its result that differ.
-type OfCase = (String, Vec<String>);
+/// Line of a case that is hashed, the limits of its result that differ, and what it says of its twins.
+type OfCase = (String, Vec<String>, Option<TwinsSaid>);
 
 /// Reads each result once: hashes those of the cases up to `end`, and compares the limits in all of them with those of
 /// their scenarios, if the folder has these. Limits of the requirements' file are in the plan, and are compared
@@ -138,13 +139,17 @@ fn read(plan: &Plan, folder: &Path, stored: &CampaignResults, end: usize) -> Rea
             // Without the copy the scenario's limits aren't known.
             _ => Vec::new(),
         };
-        Ok(Some((format!("{} {hash}\n", case.id), told)))
+        let twins = TwinsSaid::of(case, summary.as_ref());
+        Ok(Some((format!("{} {hash}\n", case.id), told, twins)))
     };
-    let error = read_in_order(plan.cases.len(), RESULTS_AT_ONCE, of_case, |place, (line, told)| {
+    let mut shared = SharedTwins::default();
+    let error = read_in_order(plan.cases.len(), RESULTS_AT_ONCE, of_case, |place, of_case| {
+        let (line, told, twins) = of_case;
         if place < end {
             hasher.update(line.as_bytes());
         }
         limits.extend(told);
+        limits.extend(shared.contradiction(twins));
         Ok(())
     });
     Read { results: hasher.finalize().to_hex().to_string(), limits, error: error.err() }

@@ -2,7 +2,8 @@
 //! folder says the same.
 //!
 //! [`status`] is the state of a campaign, [`trace`] links its requirements to cases and results, [`stop`] ends it
-//! early, [`independence`] groups cases into independent draws, [`consistency`] compares the files of its folder.
+//! early, [`independence`] groups cases into independent draws, [`consistency`] compares the files of its folder; `twins` compares
+//! the twins that cases share.
 
 mod case_states;
 pub mod consistency;
@@ -11,3 +12,4 @@ pub mod independence;
 pub mod status;
 pub mod stop;
 pub mod trace;
+pub(crate) mod twins;

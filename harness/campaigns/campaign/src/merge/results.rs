@@ -3,6 +3,7 @@
 use super::factors::FactorColumns;
 use crate::execute::case::{CaseResult, ResultError};
 use crate::judge::except_requirements::verdict_except_requirements;
+use crate::judge::twins::{SharedTwins, TwinsSaid};
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
 use crate::store::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
@@ -132,6 +133,7 @@ struct RowsOfCase {
     case: BTreeMap<String, ColumnValue>,
     checks: Vec<[Option<ColumnValue>; 9]>,
     drift: Vec<[f64; 3]>,
+    twins: Option<TwinsSaid>,
 }
 
 /// Collects the rows of all tables from results, in temporary files in a folder.
@@ -148,7 +150,13 @@ pub(crate) fn rows(
     let case_of = |index: usize| plan.cases.get(*cases.get(index)? as usize);
     let read =
         |index: usize| case_of(index).map(|case| rows_of(plan, results, case, factors)).transpose();
+    let mut shared = SharedTwins::default();
     read_in_order(cases.len(), RESULTS_AT_ONCE, read, |index, rows| {
+        if let Some(reason) = shared.contradiction(rows.twins) {
+            let id = case_of(index).map_or("", |case| case.id.as_str());
+            let path = results.place(id).map_or_else(Default::default, |at| at.path().to_owned());
+            return Err(TableError::Form { path, reason });
+        }
         let count = |rows: usize| u32::try_from(rows).unwrap_or(u32::MAX);
         counts.push([1, count(rows.checks.len()), count(rows.drift.len())]);
         all_cases.push(rows.case)?;
@@ -180,6 +188,7 @@ fn rows_of(
         case: case_row(case, &result, &hash, factors),
         checks: result.summary.iter().flat_map(|summary| check_rows(case, summary)).collect(),
         drift: series.flat_map(|navigation| &navigation.series_hours).copied().collect(),
+        twins: TwinsSaid::of(case, result.summary.as_ref()),
     })
 }
 

@@ -26,8 +26,20 @@ pub(super) fn why_not(
         None => true,
         Some(duration_s) => duration_s.is_some_and(|duration_s| duration_s < least_s),
     };
+    if needs(path).contains(&MeasureNeed::Twin)
+        && let Some(factor) = factors.iter().find(|factor| leaves_out(&factor.levels))
+    {
+        return Some(format!(
+            "requirement {:?} measures {:?}, which not every case can have: factor {:?} injects no fault in some of them, \
+             and without faults a case has no twin to be compared with; expected a fault in each of its lists (false \
+             alarms are counted in the twin), or a scenario of its own for the cases without",
+            check.id, check.measure, factor.name
+        ));
+    }
     let lacking = needs(path).into_iter().find_map(|need| match need {
-        MeasureNeed::Twin => Some("cases of a campaign run no twin without faults"),
+        MeasureNeed::Twin if base.faults.is_empty() => Some(
+            "the scenario has no faults, and without them no case has a twin to be compared with",
+        ),
         MeasureNeed::Clock | MeasureNeed::DeviceClock => {
             Some("cases of a campaign run in simulated time")
         }
@@ -52,6 +64,11 @@ pub(super) fn why_not(
         "requirement {:?} measures {:?}, which no case can have: {lacking}; expected a measure that its cases have",
         check.id, check.measure
     ))
+}
+
+/// Returns whether a factor leaves all faults out in some cases.
+fn leaves_out(levels: &Levels) -> bool {
+    matches!(levels, Levels::Faults { lists, .. } if lists.iter().any(Vec::is_empty))
 }
 
 /// Key that a factor sets.

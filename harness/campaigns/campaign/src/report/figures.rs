@@ -10,64 +10,22 @@
 
 use super::combination::{self, Combination, number_of, takes_part};
 use super::curves::StoredCurve;
+use super::effects::{CaseEffect, EffectFigures};
 use super::envelope::{EnvelopeFigures, ShownEnvelope};
 use super::rows::{CaseDrift, ReportRows};
+pub use super::spread::{CONFIDENCE, Position, Spread};
 use crate::plan::{Case, Plan};
 use octant_statistics::convergence::{ConvergenceStep, convergence};
 use octant_statistics::outlier::{LIMIT, OutlierScale, outliers};
 use octant_statistics::quantile::interval;
 use octant_statistics::rank::{RankCorrelation, spearman};
 use octant_statistics::rate::{RateBounds, rate_bounds};
-use octant_statistics::sample::{ConfidenceInterval, percentile, rms};
+use octant_statistics::sample::percentile;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Default confidence of all intervals, two-sided.
-pub const CONFIDENCE: f64 = 0.95;
 /// Measure that is correlated with the factors.
 pub const DRIFT: &str = "navigation.radial_error_nmi.rate_per_h";
-
-/// Radial position errors of many cases, nmi.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Position {
-    /// Number of cases that have it.
-    pub cases: usize,
-    /// Median.
-    pub cep50: ConfidenceInterval,
-    /// 95th percentile.
-    pub r95: ConfidenceInterval,
-    /// Root mean square.
-    pub drms: f64,
-}
-
-impl Position {
-    fn of(radial_nmi: &[f64]) -> Option<Self> {
-        Some(Self {
-            cases: radial_nmi.len(),
-            cep50: interval(radial_nmi, 0.5, CONFIDENCE)?,
-            r95: interval(radial_nmi, 0.95, CONFIDENCE)?,
-            drms: rms(radial_nmi)?,
-        })
-    }
-}
-
-/// Median and 95th percentile of a measure.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
-    /// Median.
-    pub p50: ConfidenceInterval,
-    /// 95th percentile.
-    pub p95: ConfidenceInterval,
-}
-
-impl Spread {
-    fn of(values: &[f64]) -> Option<Self> {
-        Some(Self {
-            p50: interval(values, 0.5, CONFIDENCE)?,
-            p95: interval(values, 0.95, CONFIDENCE)?,
-        })
-    }
-}
 
 /// Drift of the cases of one combination.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,6 +62,9 @@ pub struct CombinationFigures {
     pub convergence_r95: Vec<ConvergenceStep>,
     /// Correlation of the drift with each drawn factor.
     pub sensitivity: Vec<FactorFigures>,
+    /// Effects of the faults, against the twins without them; left out of a combination whose cases have no twins.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effects: Option<EffectFigures>,
 }
 
 /// Correlation of the drift with a factor.
@@ -214,6 +175,15 @@ impl<'a> Sample<'a> {
         cases.filter_map(|(place, (_, drift))| Some((*place, drift?.curve?)))
     }
 
+    /// Reads the effects of the faults of the cases; empty if no case has any.
+    fn effects(&self) -> Vec<Option<CaseEffect>> {
+        if !self.places.iter().any(|place| self.rows.has_effect(*place)) {
+            return Vec::new();
+        }
+        let rows = self.rows.at(self.places.iter().copied());
+        rows.map(|row| row.outcome.and_then(|outcome| outcome.effect)).collect()
+    }
+
     fn navigated(&self) -> usize {
         self.places.iter().filter(|place| self.rows.has_drift(**place)).count()
     }
@@ -278,6 +248,7 @@ impl CombinationFigures {
             sensitivity: (plan.factors.iter().filter(drawn))
                 .filter_map(|name| FactorFigures::of(name, &sample))
                 .collect(),
+            effects: EffectFigures::of(&sample.effects()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Report of a campaign: numbers, discrepancies, and the evidence of both.
 //!
-//! [`rows`] reads the results, [`combination`] groups them, [`figures`] and [`requirement`] are
+//! [`rows`] reads the results, [`combination`] groups them, [`figures`], [`effects`] and [`requirement`] are
 //! their statistics, [`envelope`] those of the errors over time, [`units`] the units of the page, [`sites`]
 //! those at the site of a case, [`discrepancy`] lists everything that isn't a pass,
 //! [`disposition`](octant_evidence::disposition) has its dispositions, [`CampaignReport`] puts them together.
@@ -12,6 +12,7 @@ pub mod combination;
 mod contents;
 mod curves;
 pub mod discrepancy;
+pub mod effects;
 pub mod envelope;
 mod error;
 pub mod figures;
@@ -24,6 +25,7 @@ mod row_bytes;
 pub mod rows;
 pub mod selftest;
 pub mod sites;
+mod spread;
 mod tables;
 pub mod units;
 

@@ -1,6 +1,7 @@
 //! Parts of a case's result that a report needs.
 
 use super::curves::{Curve, CurveWriter, StoredCurve};
+use super::effects::CaseEffect;
 use crate::execute::case::CaseResult;
 use crate::judge::except_requirements::verdict_except_requirements;
 use octant_score::summary::{NavigationScore, Summary};
@@ -32,6 +33,8 @@ pub struct RowOutcome {
     pub stream_hash: Option<String>,
     /// Drift; `None` without a navigation.
     pub drift: Option<CaseDrift>,
+    /// Effect of its faults; `None` without a twin.
+    pub effect: Option<CaseEffect>,
 }
 
 /// The drift of a case.
@@ -77,10 +80,12 @@ impl ReadOutcome {
             differs,
             stream_hash: None,
             drift: None,
+            effect: None,
         };
         let Some(summary) = result.summary else { return Self { outcome, curve: None } };
-        let Summary { reasons, requirements, faults, calibration, navigation, stream_hash, .. } =
-            summary;
+        let Summary { reasons, requirements, faults, calibration, navigation, .. } = summary;
+        let Summary { counterfactual, stream_hash, .. } = summary;
+        outcome.effect = counterfactual.as_ref().map(CaseEffect::of);
         outcome.reasons = reasons;
         outcome.checks = requirements;
         outcome.refused = calibration.and_then(|calibration| calibration.refused);

@@ -1,6 +1,7 @@
 //! Bytes of a row in the temporary file of the rows.
 
 use super::curves::{CurveFile, StoredCurve};
+use super::effects::CaseEffect;
 use super::outcome::{CaseDrift, RowOutcome};
 use octant_score::verdict::RequirementResult;
 use octant_verdict::{Comparison, Verdict};
@@ -12,7 +13,7 @@ pub(super) type ErrorNames = Vec<(&'static str, &'static str)>;
 /// Appends the bytes of a row.
 pub(super) fn encode(outcome: &RowOutcome, names: &mut ErrorNames, to: &mut Vec<u8>) {
     let RowOutcome { verdict, besides, error, reasons, checks, refused, unfired, .. } = outcome;
-    let RowOutcome { differs, stream_hash, drift, .. } = outcome;
+    let RowOutcome { differs, stream_hash, drift, effect, .. } = outcome;
     // The drift comes first: most figures need it alone.
     option(drift.as_ref(), to, |drift, to| {
         let CaseDrift { duration_h, final_nmi, max_nmi, rms_nmi, rate_nmi_per_h, .. } = drift;
@@ -46,6 +47,14 @@ pub(super) fn encode(outcome: &RowOutcome, names: &mut ErrorNames, to: &mut Vec<
     option(refused.as_deref(), to, text);
     list(unfired, to, |fault, to| text(fault, to));
     option(stream_hash.as_deref(), to, text);
+    option(effect.as_ref(), to, |effect, to| {
+        let CaseEffect { shift_sigma, delay_s, undetected, refused, missed, false_alarms } = effect;
+        option(*shift_sigma, to, number);
+        option(*delay_s, to, number);
+        to.extend(undetected.to_le_bytes());
+        to.extend(false_alarms.to_le_bytes());
+        to.extend([u8::from(*refused), u8::from(*missed)]);
+    });
 }
 
 fn place_of(verdict: Verdict) -> u8 {
@@ -110,6 +119,7 @@ pub(super) fn decode(
         unfired: rest.list(Rest::text)?,
         stream_hash: rest.option(Rest::text)?,
         drift,
+        effect: rest.option(Rest::effect)?,
     };
     rest.0.is_empty().then_some(outcome)
 }
@@ -179,6 +189,17 @@ impl Rest<'_> {
             uncertainty: self.option(Self::number)?,
             verdict: self.verdict()?,
             reason: self.option(Self::text)?,
+        })
+    }
+
+    fn effect(&mut self) -> Option<CaseEffect> {
+        Some(CaseEffect {
+            shift_sigma: self.option(Self::number)?,
+            delay_s: self.option(Self::number)?,
+            undetected: u64::from_le_bytes(self.eight()?),
+            false_alarms: u64::from_le_bytes(self.eight()?),
+            refused: self.byte()? != 0,
+            missed: self.byte()? != 0,
         })
     }
 

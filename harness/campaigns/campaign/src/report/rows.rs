@@ -9,6 +9,7 @@ use super::error::ReportError;
 use super::outcome::ReadOutcome;
 use super::row_bytes::{ErrorNames, decode, decode_drift, encode};
 use crate::judge::independence;
+use crate::judge::twins::{SharedTwins, TwinsSaid};
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
 use crate::store::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
@@ -52,7 +53,11 @@ pub struct ReportRows<'a> {
 struct KnownRow {
     verdict: Option<Verdict>,
     navigated: bool,
+    has_effect: bool,
 }
+
+/// What a result says of its twins, if it has any.
+type Twins = Option<TwinsSaid>;
 
 /// Reads the rows of a plan up to `end`, and one hash of all results.
 ///
@@ -73,19 +78,26 @@ pub fn read<'a>(
         path: std::env::temp_dir(),
         source,
     };
-    let read = |place: usize| -> Result<Option<Option<(ReadOutcome, String)>>, ReportError> {
+    let mut shared = SharedTwins::default();
+    let read = |place: usize| -> Result<Option<Option<(ReadOutcome, String, Twins)>>, ReportError> {
         let Some(case) = cases.get(place) else { return Ok(None) };
         let Some((result, hash)) = results.of_plan(plan, case)? else { return Ok(Some(None)) };
         let differs = results.differing(&case.id)?.is_some();
-        Ok(Some(Some((ReadOutcome::of(result, differs), hash))))
+        let twins = TwinsSaid::of(case, result.summary.as_ref());
+        Ok(Some(Some((ReadOutcome::of(result, differs), hash, twins))))
     };
     read_in_order(cases.len(), RESULTS_AT_ONCE, read, |place, read| {
         let Some(case) = cases.get(place) else { return Ok(()) };
-        let Some((outcome, hash)) = read else {
+        let Some((outcome, hash, twins)) = read else {
             hasher.update(format!("{} -\n", case.id).as_bytes());
             return rows.push(None, &mut bytes).map_err(wrong);
         };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
+        if let Some(reason) = shared.contradiction(twins) {
+            let path =
+                results.place(&case.id).map_or_else(Default::default, |at| at.path().to_owned());
+            return Err(ReportError::Form { path, reason });
+        }
         let outcome = outcome.keep(&mut curves).map_err(wrong)?;
         rows.push(Some(&outcome), &mut bytes).map_err(wrong)
     })?;
@@ -122,6 +134,7 @@ impl<'a> ReportRows<'a> {
         self.known.push(KnownRow {
             verdict: outcome.map(|outcome| outcome.verdict),
             navigated: outcome.is_some_and(|outcome| outcome.drift.is_some()),
+            has_effect: outcome.is_some_and(|outcome| outcome.effect.is_some()),
         });
         if bytes.len() >= WRITTEN { self.flush(bytes) } else { Ok(()) }
     }
@@ -171,6 +184,12 @@ impl<'a> ReportRows<'a> {
     #[must_use]
     pub fn has_drift(&self, place: usize) -> bool {
         self.known.get(place).is_some_and(|known| known.navigated)
+    }
+
+    /// Returns whether a case has an effect of its faults, against its twin.
+    #[must_use]
+    pub fn has_effect(&self, place: usize) -> bool {
+        self.known.get(place).is_some_and(|known| known.has_effect)
     }
 
     /// Takes the first error of reading a row, or the drift of one.

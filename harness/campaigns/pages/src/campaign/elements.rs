@@ -7,10 +7,11 @@ use octant_evidence::manifest::shell_line;
 use octant_statistics::sample::ConfidenceInterval;
 
 /// Sections of the page: anchor and heading.
-pub(super) const SECTIONS: [(&str, &str); 10] = [
+pub(super) const SECTIONS: [(&str, &str); 11] = [
     ("requirements", "Requirements"),
     ("drift", "Drift"),
     ("envelopes", "Errors over time"),
+    ("effects", "Effects of faults"),
     ("prediction", "Predicted and simulated"),
     ("convergence", "Convergence"),
     ("sensitivity", "Sensitivity"),

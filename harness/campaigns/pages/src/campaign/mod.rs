@@ -8,6 +8,7 @@
 mod certificate;
 mod convergence;
 mod drift;
+mod effects;
 mod elements;
 mod findings;
 mod matrix;
@@ -38,6 +39,7 @@ pub fn render(report: &CampaignReport<'_>, beside: bool) -> String {
         (requirements::section(report))
         (drift::table(report))
         (drift::envelopes(report))
+        (effects::section(report))
         (prediction::section(report))
         (convergence::section(report))
         (sensitivity::section(report))

@@ -31,6 +31,7 @@ use self::set_up::{Line, SetUp};
 use self::steps::{Injects, Keeps, NoFaults, Steps};
 use crate::observers::Observers;
 use crate::observers::done::PlannedWork;
+use crate::observers::session::SessionTrack;
 use ended::TimeKeeping;
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, InProcess};
@@ -178,6 +179,8 @@ impl<'a, S: Source, E: Endpoint> Bench<S, E, Records<'a>> {
         let work = PlannedWork::of(scenario, method, &core, tells, recorded);
         let mut observers = Observers::new(work);
         observers.trace = plan.trace.then(octant_score::trace::RunTrace::new);
+        observers.session =
+            plan.session.map(|session| Box::new(SessionTrack::of(session, tells.attitude)));
         observers.charts = plan.drawn();
         observers.read_headings_of(scenario);
         let mut bench =

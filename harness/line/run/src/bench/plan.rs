@@ -7,6 +7,7 @@ use super::recording::StreamKeeping;
 use crate::observers::Charts;
 use crate::observers::at_rest::AtRest;
 use crate::observers::filtered::FilteredSeries;
+use crate::observers::session::Session;
 use octant_base::control::Control;
 use octant_recorder::RecorderTrouble;
 use octant_scenario::{Method, Scenario};
@@ -41,6 +42,9 @@ pub struct Plan<'a> {
     pub looks: Looks,
     /// Whether the scenario's faults act in the run itself. Beside a run that others branch off from, they wait.
     pub faults: bool,
+    /// The session, where it is compared with another one of a unit that is in another process or device, and may
+    /// remember.
+    pub session: Option<Session>,
 }
 
 /// Faults of a run, set up: from the start of its session a device waits for its first sample.
@@ -68,7 +72,18 @@ impl<'a> Plan<'a> {
         };
         let charts = matches!(recording, StreamKeeping::File(_));
         let looks = Looks::Seldom;
-        Self { scenario, method, seed, control, recording, trace, charts, looks, faults: true }
+        Self {
+            scenario,
+            method,
+            seed,
+            control,
+            recording,
+            trace,
+            charts,
+            looks,
+            faults: true,
+            session: None,
+        }
     }
 
     /// Sets up the faults, with the host that they act on.

@@ -2,7 +2,8 @@
 //!
 //! Each observer has one subject: [`answers`] the rules of the unit, [`done`] the work completed, [`moments`] the
 //! solution at the ends of alignment and calibration, [`drift`] the navigation against the truth, [`convergence`] the
-//! parameters, [`measurements`] health and NIS, [`gimbals`] their angles, [`heading`] the readings of a heading test; [`at_rest`] the noise of the sensors and
+//! parameters, [`measurements`] health and NIS, [`gimbals`] their angles, [`heading`] the readings of a heading test, [`session`] the
+//! answers that are compared with another session of the unit; [`at_rest`] the noise of the sensors and
 //! [`filtered`] the σ of a filter, which only a report shows. [`Observers`] gives each of them what it needs, once.
 //!
 //! The same observers see a live run and a recording afterwards ([`Observers::answer`], then
@@ -22,6 +23,7 @@ pub mod heading;
 pub mod information;
 pub mod measurements;
 pub mod moments;
+pub mod session;
 mod solution;
 pub mod whiteness;
 
@@ -36,6 +38,7 @@ use self::heading::HeadingReadings;
 use self::information::CalibrationInformation;
 use self::measurements::Measurements;
 use self::moments::{Moment, Moments};
+use self::session::SessionTrack;
 use self::solution::{SolutionErrors, attitude_error, errors, position_error, velocity_error};
 use octant_endpoint::Tells;
 use octant_followed::{Compared, Follower, Told};
@@ -87,6 +90,8 @@ pub struct Observers {
     pub heading: Option<Box<HeadingReadings>>,
     /// Trace for the comparison with a twin, where there is one.
     pub trace: Option<RunTrace>,
+    /// Answers for the comparison with another session of the same unit, where there is one.
+    pub session: Option<Box<SessionTrack>>,
     /// Series for a report alone.
     pub charts: Charts,
 }
@@ -160,6 +165,7 @@ impl Observers {
             gimbals: GimbalSeries::default(),
             heading: None,
             trace: None,
+            session: None,
             charts: Charts::default(),
         }
     }
@@ -222,6 +228,9 @@ impl Observers {
         }
         let now_ns = self.now.source.unwrap_or(output.device_time).ns;
         self.done.epoch(now_ns, output);
+        if let Some(session) = &mut self.session {
+            session.answer(sent, output);
+        }
         if altered {
             self.answers.altered();
             self.followed.interrupt();

@@ -3,6 +3,7 @@
 
 use super::clock_doubt::clock_doubt;
 use super::compared::too_like;
+use super::difference::between;
 use super::method::{MethodRun, planned_of};
 use super::refusal::Seen;
 use crate::bench::ended::Ended;
@@ -40,11 +41,23 @@ pub fn findings(
         findings.extend(too_like.map(|reason| Finding::of_bench(Verdict::Inconclusive, reason)));
         findings.extend(of_unit(scenario, run, method, &place));
         findings.extend(of_run(&scenario.realtime, run, &place));
-        if let Some(twin) = &run.twin
-            && let Some(misbehaviour) = &twin.observed.answers.misbehaved
-        {
-            let reason = format!("{misbehaviour}{place}, in the twin without faults");
-            findings.push(Finding::of_unit(Verdict::Fail, reason));
+        let Some(twin) = &run.twin else { continue };
+        let memory = between(scenario, run, twin).and_then(|found| found.sessions?.memory());
+        let remembers =
+            |reason| Finding::of_unit(Verdict::Inconclusive, format!("{reason}{place}"));
+        findings.extend(memory.map(remembers));
+        let in_twin = |reason: &str| format!("{reason}{place}, in the twin without faults");
+        match &twin.observed.answers.misbehaved {
+            Some(misbehaviour) => {
+                let reason = in_twin(&misbehaviour.to_string());
+                findings.push(Finding::of_unit(Verdict::Fail, reason));
+            }
+            None => {
+                let reasons = twin.observed.answers.do_not_follow();
+                let inconclusive =
+                    |reason: String| Finding::of_unit(Verdict::Inconclusive, in_twin(&reason));
+                findings.extend(reasons.into_iter().map(inconclusive));
+            }
         }
     }
     findings

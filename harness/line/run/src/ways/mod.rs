@@ -16,6 +16,7 @@ pub mod passes;
 pub mod prepared;
 pub mod realtime;
 pub mod replayed;
+mod sessions;
 pub mod side_by_side;
 pub mod smoothed;
 pub mod smoothing_doubts;

@@ -92,7 +92,12 @@ pub(super) fn set_up(plan: &Plan<'_>, mut set_up: SetUp) -> Result<MethodRun, Me
     if simulated {
         once(plan, Bench::open(plan, ready, set_up, SetUp::simulated)?)
     } else {
-        once(plan, Bench::open(plan, ready, set_up, SetUp::opened)?)
+        let dither = plan.session.and_then(|session| session.dither);
+        let opened = |set_up: &mut SetUp, scenario: &Scenario| {
+            let Line { source, endpoint, recorded } = set_up.opened(scenario)?;
+            Ok(Line { source: source.of_session(dither), endpoint, recorded })
+        };
+        once(plan, Bench::open(plan, ready, set_up, opened)?)
     }
 }
 

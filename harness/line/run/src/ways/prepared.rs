@@ -1,6 +1,7 @@
 //! A scenario that is ready to run: its methods, and their twins without faults.
 
 use super::once;
+use super::sessions::BothSessions;
 use super::twin::run_with_twin;
 use crate::bench::ended::Ended;
 use crate::bench::error::{MethodError, SetupError};
@@ -201,14 +202,20 @@ impl<'a> Prepared<'a> {
         if let Some(both) = run_with_twin(&this, &twin) {
             return Ok(both?);
         }
-        let (faulted, twin) = if alone {
-            let faulted = run(&this, checked).inspect(|run| self.note_lost(run));
-            (faulted, run(&twin, None))
-        } else {
-            std::thread::scope(|scope| {
+        let sessions = BothSessions::of(self.scenario, method, seed);
+        let this = Plan { session: sessions.map(|both| both.faulted), ..this };
+        let twin = Plan { session: sessions.map(|both| both.twin), ..twin };
+        let lost = |run: &MethodRun| self.note_lost(run);
+        let (faulted, twin) = match sessions {
+            Some(both) if both.twin.is_first => {
+                let twin = run(&twin, None);
+                (run(&this, checked).inspect(lost), twin)
+            }
+            None if !alone => std::thread::scope(|scope| {
                 let twin = spawn(scope, || run(&twin, None));
                 (run(&this, checked), joined(twin))
-            })
+            }),
+            _ => (run(&this, checked).inspect(lost), run(&twin, None)),
         };
         Ok(MethodRun { twin: Some(Arc::new(twin?)), ..faulted? })
     }

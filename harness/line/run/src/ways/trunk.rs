@@ -6,7 +6,6 @@ use crate::bench::ended::Ended;
 use crate::bench::error::{MethodError, SetupError};
 use crate::bench::faulted::Faulted;
 use crate::bench::plan::Plan;
-use crate::bench::recording::StreamKeeping;
 use crate::bench::records::{CONTROL_EPOCHS, nobody};
 use crate::bench::set_up::SetUp;
 use crate::bench::steps::Injects;
@@ -100,7 +99,7 @@ impl<'a> Trunk<'a, '_> {
     fn begin(&self) -> Result<Simulated<'static>, SetupError> {
         let Group { beginning, draws, runs } = &**self.group;
         let first = runs.first().map_or(0, |(index, _)| *index);
-        let trace = !matches!(self.plans[first].recording, StreamKeeping::HashAlone);
+        let trace = runs.iter().any(|(index, _)| self.plans[*index].trace);
         let plan = Plan { faults: false, trace, control: nobody(), ..self.plans[first] };
         let mut bench =
             Bench::open(&plan, plan.ready()?, beginning.set_up(draws), SetUp::simulated)?;

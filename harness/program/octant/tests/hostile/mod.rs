@@ -7,6 +7,7 @@
 mod adaptive;
 mod answers;
 mod bench;
+mod campaigns;
 mod fmu;
 mod honest;
 mod numbers;
@@ -14,6 +15,7 @@ mod page;
 mod program;
 mod sessions;
 mod studies;
+mod twins;
 mod unit;
 
 use octant_verdict::Verdict;

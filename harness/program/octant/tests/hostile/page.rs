@@ -1,6 +1,6 @@
 //! Page of all attacks, generated from the tests themselves.
 
-use super::{Row, adaptive, answers, bench, fmu, honest, sessions};
+use super::{Row, adaptive, answers, bench, campaigns, fmu, honest, sessions, twins};
 use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,15 @@ use std::path::Path;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/qualification/attacks.md");
 
 fn rows() -> Vec<Row> {
-    let parts = [answers::rows(), adaptive::rows(), sessions::rows(), fmu::rows(), bench::rows()];
+    let parts = [
+        answers::rows(),
+        adaptive::rows(),
+        sessions::rows(),
+        twins::rows(),
+        fmu::rows(),
+        bench::rows(),
+        campaigns::rows(),
+    ];
     parts.concat()
 }
 
@@ -50,9 +58,10 @@ fn page() -> String {
         }
     }
     for group in groups {
+        let who = if group == "campaign" { "Somebody who" } else { "A unit that" };
         let _ = writeln!(
             text,
-            "## {group}\n\n| A unit that … | over | ends as | because of |\n|---|---|---|---|"
+            "## {group}\n\n| {who} … | over | ends as | because of |\n|---|---|---|---|"
         );
         for row in rows.iter().filter(|row| row.group == group) {
             let because = row.ends.because.replace('|', "\\|");
@@ -79,6 +88,10 @@ fn page() -> String {
              Where the true position moves, answers between two seconds are compared with it only from a step of \
              0.6 m, 0.05 m/s\nor 2 mrad on: a unit that goes away and comes back within a second in smaller steps, each \
              of which fits its samples, isn't seen.\n\
+             A unit that knows the noise of both sessions beforehand can add to remembered answers what the dither of \
+             the other\nsession would have moved them by; and one that repeats its parameters with a jitter, and \
+             navigates otherwise as it should,\nhas an effect as small as that jitter: require the drift of the \
+             navigation too\n(`counterfactual.navigation.radial_max_nmi`).\n\
              Uncertainties that are too large make every normalized error small: require the uncertainties, or the \
              gain, too\n(`calibration.parameters.gyro_bias_x.sigma`, `calibration.least_gain`).\n\
              A unit that knows the site, integrates the noise of its samples alone and adds it to the site answers as one \

@@ -128,33 +128,51 @@ pub struct Served {
 
 impl Served {
     pub fn new(over: Over, scenario: &Scenario, twist: Twist) -> Self {
-        let config = core_of(scenario, Method::Primary, scenario.seed).unwrap();
-        let core = ServedCore::new(&config).unwrap();
-        let facts = core.facts(twist.silence_ms);
-        let stop = Arc::new(AtomicBool::new(false));
-        let mut threads = Vec::new();
-        let (uri, reached): (Uri, Option<String>) = match over {
-            Over::Serial => ("pty:".parse().unwrap(), None),
-            Over::Udp => ("udp:0".parse().unwrap(), None),
-            Over::Can => {
-                let (near, far, bridge) = bridge(&stop);
-                threads.push(bridge);
-                (far.parse().unwrap(), Some(near))
-            }
-        };
-        let port = port::open(&uri, EndRole::Device).unwrap();
-        let reached = reached.unwrap_or_else(|| port::announcement(&uri, &port));
-        let wire = Wire::new(uri.to_string(), port, EndRole::Device);
-        let until = Arc::clone(&stop);
-        threads.push(std::thread::spawn(move || {
-            let mut steps = Twisted::new(core, twist);
-            let mut notice = |_: &Notice| {};
-            let mut device = Device::new(wire, facts, &mut steps, &mut notice).unwrap();
-            // The loss of the port ends the session.
-            let _ = device.serve(&until);
-        }));
-        Self { stop, threads, uri: reached }
+        serve_patiently(over, scenario, twist.silence_ms, move |core| Twisted::new(core, twist))
     }
+}
+
+/// Serves a unit that is made of the core.
+pub fn serve<S: Steps>(
+    over: Over,
+    scenario: &Scenario,
+    unit: impl FnOnce(ServedCore) -> S + Send + 'static,
+) -> Served {
+    serve_patiently(over, scenario, HONEST.silence_ms, unit)
+}
+
+fn serve_patiently<S: Steps>(
+    over: Over,
+    scenario: &Scenario,
+    silence_ms: u16,
+    unit: impl FnOnce(ServedCore) -> S + Send + 'static,
+) -> Served {
+    let config = core_of(scenario, Method::Primary, scenario.seed).unwrap();
+    let core = ServedCore::new(&config).unwrap();
+    let facts = core.facts(silence_ms);
+    let stop = Arc::new(AtomicBool::new(false));
+    let mut threads = Vec::new();
+    let (uri, reached): (Uri, Option<String>) = match over {
+        Over::Serial => ("pty:".parse().unwrap(), None),
+        Over::Udp => ("udp:0".parse().unwrap(), None),
+        Over::Can => {
+            let (near, far, bridge) = bridge(&stop);
+            threads.push(bridge);
+            (far.parse().unwrap(), Some(near))
+        }
+    };
+    let port = port::open(&uri, EndRole::Device).unwrap();
+    let reached = reached.unwrap_or_else(|| port::announcement(&uri, &port));
+    let wire = Wire::new(uri.to_string(), port, EndRole::Device);
+    let until = Arc::clone(&stop);
+    threads.push(std::thread::spawn(move || {
+        let mut steps = unit(core);
+        let mut notice = |_: &Notice| {};
+        let mut device = Device::new(wire, facts, &mut steps, &mut notice).unwrap();
+        // The loss of the port ends the session.
+        let _ = device.serve(&until);
+    }));
+    Served { stop, threads, uri: reached }
 }
 
 impl Drop for Served {
