@@ -7,7 +7,7 @@ use octant_evidence::manifest::shell_line;
 use octant_statistics::sample::ConfidenceInterval;
 
 /// Sections of the page: anchor and heading.
-pub(super) const SECTIONS: [(&str, &str); 10] = [
+pub(super) const SECTIONS: [(&str, &str); 11] = [
     ("requirements", "Requirements"),
     ("drift", "Drift"),
     ("envelopes", "Errors over time"),
@@ -17,6 +17,7 @@ pub(super) const SECTIONS: [(&str, &str); 10] = [
     ("findings", "Cases to look at"),
     ("discrepancies", "Discrepancies"),
     ("trace", "Trace"),
+    ("journal", "Looks and journal"),
     ("provenance", "Provenance"),
 ];
 

@@ -6,6 +6,8 @@
 
 mod answers;
 mod bench;
+mod campaign_content;
+mod campaigns;
 mod fmu;
 mod honest;
 mod numbers;

@@ -1,6 +1,6 @@
 //! Page of all attacks, generated from the tests themselves.
 
-use super::{Row, answers, bench, fmu, honest, sessions};
+use super::{Row, answers, bench, campaigns, fmu, honest, sessions};
 use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,8 @@ use std::path::Path;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/qualification/attacks.md");
 
 fn rows() -> Vec<Row> {
-    let parts = [answers::rows(), sessions::rows(), fmu::rows(), bench::rows()];
+    let parts =
+        [answers::rows(), sessions::rows(), fmu::rows(), bench::rows(), campaigns::rows()];
     parts.concat()
 }
 
@@ -38,7 +39,9 @@ fn page() -> String {
         text,
         "{}; none ends in pass.\n\n\
          The unit is the core itself with its answers altered, in 20 s of calibration through a move and 10 s of\n\
-         navigation at 50 Hz. Without the alteration it passes, over each port: the honest neighbour of each.\n",
+         navigation at 50 Hz. Without the alteration it passes, over each port: the honest neighbour of each.\n\
+         Of a campaign the attacker is a person who has its folder, which is unsigned. Refused is the command that would use\n\
+         it; `octant verify` ends as fail where a folder isn't whole.\n",
         counted.join(", ")
     );
     let mut groups: Vec<&str> = Vec::new();
@@ -50,7 +53,8 @@ fn page() -> String {
     for group in groups {
         let _ = writeln!(
             text,
-            "## {group}\n\n| A unit that … | over | ends as | because of |\n|---|---|---|---|"
+            "## {group}\n\n| A {} … | over | ends as | because of |\n|---|---|---|---|",
+            if campaigns::is_of_person(group) { "person who" } else { "unit that" }
         );
         for row in rows.iter().filter(|row| row.group == group) {
             let because = row.ends.because.replace('|', "\\|");
