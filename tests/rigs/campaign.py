@@ -19,6 +19,7 @@ import duckdb
 import pandas
 import polars
 
+import junit_reader
 from children import popen
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -197,6 +198,25 @@ def for_schedulers(folder):
     check("the script of Slurm is a shell's", script.returncode == shell.returncode == 0, shell.stderr)
 
 
+def read_by_ci(folder):
+    """The JUnit of the campaign and that of a run, by what CI systems read them with."""
+    report = octant("campaign", "report", folder)
+    check("the campaign is reported", report.returncode in (0, 1, 3), report.stdout + report.stderr)
+    run = folder.parent / "run-for-ci"
+    result = octant("run", ROOT / "fixtures/scenarios/lockstep.toml", "--out", run)
+    check("a run for CI", result.returncode in (0, 1), result.stdout + result.stderr)
+    for name, path in [("campaign", folder / "junit.xml"), ("run", run / "junit.xml")]:
+        found = junit_reader.faults(path)
+        check(f"the JUnit of the {name} is within the schema of Jenkins' xUnit plugin", not found, found[:5])
+        counts, outputs, time_s, said = junit_reader.read(path)
+        text = path.read_text()
+        check(f"junitparser reads every test case of the {name}", sum(counts.values()) == said["tests"] > 0, (counts, said))
+        same = counts["failure"] == said["failures"] and counts["error"] == said["errors"]
+        check(f"and their results in the {name}", same, (counts, said))
+        check(f"and their properties in the {name}", 0 < outputs == text.count("<system-out>"), outputs)
+        check(f"the {name} has its time", time_s and time_s > 0, time_s)
+
+
 def evidence(work):
     """A signed run: minisign verifies it, and every change is found."""
     keys = [work / "key.pub", work / "key", work / "other.pub", work / "other"]
@@ -325,6 +345,7 @@ with tempfile.TemporaryDirectory() as name:
     if COST:
         merged(folder)
     for_schedulers(folder)
+    read_by_ci(folder)
     read_by_others(folder)
     os.chdir("/")
 sys.exit(f"{len(failures)} failed: {failures}" if failures else 0)

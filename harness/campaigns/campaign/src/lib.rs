@@ -7,6 +7,7 @@
 //! | [`mod@plan`] | the list of its cases, made once from the file |
 //! | [`mod@execute`] | runs [one case](execute::case), or all of them in processes that do the [work](execute::work) |
 //! | [`store`] | the results of cases, stored and read |
+//! | [`journal`] | what was done with it: plans, looks, repetitions |
 //! | [`merge`] | [tables](merge::results) of results, and those of all parts of a campaign as one |
 //! | [`judge`] | the state of a campaign, its requirements, and whether its folder is consistent |
 //! | [`report`] | numbers, discrepancies, and the evidence of both |
@@ -16,6 +17,7 @@
 
 pub mod against;
 pub mod execute;
+pub mod journal;
 pub mod judge;
 pub mod merge;
 pub mod plan;

@@ -355,12 +355,15 @@ fn campaign(
     let cases = (0..outcomes.len()).map(|i| Case { id: id(i).parse().unwrap(), ..case(i) });
     let plan = Plan {
         bundled: None,
+        copies: None,
         schema: plan::SCHEMA,
         id: String::new(),
         title: "t".to_owned(),
         campaign: PathBuf::from("c.toml"),
         limits: CaseLimits { time_s: 1.0, memory_mib: 1 },
         stop: None,
+        looks: Default::default(),
+        seed_from_plan: false,
         factors: Vec::new(),
         requirements: vec![Planned { check: Found::Kept.requirement(), ensemble }],
         not_by_test: Vec::new(),

@@ -1,11 +1,11 @@
 //! Folder of a campaign as evidence: inputs, results, and a manifest with the hash of every file,
 //! signed as that of a run.
 
-use octant_campaign::plan::INPUTS;
+use octant_campaign::plan::{INPUTS, Plan};
 use octant_campaign::report::file_names::{JUNIT, PAGE, PREDICTION, STATISTICS};
 use octant_campaign::report::junit::junit;
 use octant_campaign::report::{CampaignReport, ReportError, again};
-use octant_evidence::manifest::{CampaignFacts, program_sha256};
+use octant_evidence::manifest::{CampaignFacts, JournalCounts, program_sha256};
 use octant_evidence::signature::{self, SigningKey};
 use octant_evidence::{Manifest, RunFacts, disposition};
 use std::io::{BufWriter, ErrorKind, Write};
@@ -38,6 +38,8 @@ pub fn write(
             "octant campaign report DIR",
         )?;
     }
+    report.signature = key.as_ref().map(|key| format!("minisign key {}", key.id()));
+    octant_campaign::execute::remove_locks(folder);
     let path_of = |name: &str| folder.join(name);
     let xml = new_junit(report, &path_of(JUNIT))?;
     let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
@@ -73,6 +75,12 @@ pub fn write(
             discrepancies: report.statistics.discrepancies.len(),
             open_discrepancies: report.open(),
             results_blake3: report.statistics.results_blake3.clone(),
+            seed: report.statistics.seed.clone(),
+            looks: report.statistics.looks.way.clone(),
+            journal: Some(JournalCounts {
+                entries: report.journal.len(),
+                looks: report.journal.iter().filter(|entry| entry.is_look()).count(),
+            }),
             program_sha256: program,
             made_by: report.made_by.clone(),
             selftest: report.selftest.as_ref().map(|test| test.verdict),
@@ -85,6 +93,51 @@ pub fn write(
         ..RunFacts::between(started, SystemTime::now())
     };
     Ok(Manifest::write(folder, &facts)?)
+}
+
+/// Returns the names of the files of a folder that its plan, results and journal give otherwise. The folder was verified,
+/// and its report was made by this program.
+///
+/// # Errors
+/// If a report can't be made of the folder, or a file can't be read.
+pub fn differing(
+    plan: &Plan,
+    folder: &Path,
+    manifest: &Manifest,
+) -> Result<Vec<&'static str>, ReportError> {
+    let mut plan = plan.clone();
+    plan.use_copies(folder);
+    let mut report = CampaignReport::of(&plan, folder)?;
+    // The folder may have another name now.
+    let words = &manifest.command_line;
+    if let Some(name) = words.get(3) {
+        report.name.clone_from(name);
+    }
+    let units = words.iter().position(|word| word == "--units");
+    if let Some(units) = units.and_then(|at| words.get(at + 1)?.parse().ok()) {
+        report.show_in(units)?;
+    }
+    report.signature.clone_from(&manifest.signature);
+    let mut xml = Vec::new();
+    let wrong = |path: PathBuf| move |source| ReportError::System { action: "read", path, source };
+    junit(&report, &mut xml).map_err(wrong(folder.join(JUNIT)))?;
+    let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
+    let page = crate::campaign::render(&report, true);
+    report.check()?;
+    let made: [(&'static str, &[u8]); 4] = [
+        (STATISTICS, statistics.as_bytes()),
+        (PREDICTION, prediction.as_bytes()),
+        (JUNIT, &xml),
+        (PAGE, page.as_bytes()),
+    ];
+    let mut differing = Vec::new();
+    for (name, bytes) in made {
+        let path = folder.join(name);
+        if std::fs::read(&path).map_err(wrong(path))? != bytes {
+            differing.push(name);
+        }
+    }
+    Ok(differing)
 }
 
 /// Writes the JUnit file under another name: it is as long as the campaign, and gets its own name with the

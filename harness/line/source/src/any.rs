@@ -1,11 +1,11 @@
 //! A source whose kind is known only from the scenario.
 
 use super::dither::Dither;
-use super::session_dither::SessionDither;
 use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
 use super::known::KnownReference;
 use super::measured::MeasuredReference;
+use super::session_dither::SessionDither;
 use super::{
     Epoch, LiveSource, LogSource, PlantSource, Replay, SolutionSource, Source, SourceError,
     TextSource,

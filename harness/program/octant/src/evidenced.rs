@@ -23,7 +23,7 @@ use octant_run::findings::broken as what_broke;
 use octant_run::{Ended, MethodRun, Prepared, Run, prepared, raw_counts};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Scenario, SourceSpec};
-use octant_score::junit::junit;
+use octant_score::junit::{JunitTimes, junit};
 use octant_trajectory::TrajectoryReader;
 use octant_verdict::Verdict;
 use octant_verdict::equipment::Day;
@@ -351,17 +351,27 @@ fn write_results(
         .to_json()
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     write(&folder.join("summary.json"), &text_json)?;
-    let xml = junit(summary)
-        .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
+    let (page, xml) = texts(&mut run, &Manifest::of(facts))?;
+    let summary = &run.summary;
     write(&folder.join("junit.xml"), xml)?;
     let mut human = text(summary, &run.report.units);
     if run.report.truth.is_none() {
         human += &parameter_text(summary, source);
     }
-    run.report.provenance = crate::report::provenance(&Manifest::of(facts));
-    write(&folder.join("report.html"), report::run::render(&run.report))?;
+    write(&folder.join("report.html"), page)?;
     Manifest::write(folder, facts).map_err(|error| Failure::bench(format!("failed to {error}")))?;
     Ok((summary.verdict, Printed { text: text_json, human }))
+}
+
+/// Makes report and JUnit of a run that its manifest describes.
+pub(crate) fn texts(run: &mut Run, manifest: &Manifest) -> Result<(String, String), Failure> {
+    let time = |text: &str| octant_base::utc::parse(text).ok();
+    let times = time(&manifest.started).zip(time(&manifest.ended));
+    let times = times.map(|(started, ended)| JunitTimes { started, ended });
+    let xml = junit(&run.summary, times)
+        .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
+    run.report.provenance = crate::report::provenance(manifest);
+    Ok((report::run::render(&run.report), xml))
 }
 
 /// Runs a scenario on a recording, by replacing its source with this file.

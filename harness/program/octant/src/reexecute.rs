@@ -1,13 +1,14 @@
 //! `octant verify --reexecute`: runs the content of a folder of evidence again from that folder
 //! alone.
 
-use super::evidenced::{execute, prepare};
+use super::evidenced::{execute, prepare, texts};
 use super::progress::Follower;
 use crate::failure::Failure;
 use crate::terminal::note;
 use octant_base::number::counted;
 use octant_campaign::execute::reexecute::{self, CONFIDENCE, altered_at_most};
 use octant_campaign::plan::{FILE_NAME, Plan};
+use octant_campaign_pages::evidence;
 use octant_evidence::InputFacts;
 use octant_evidence::manifest::{Manifest, program_sha256};
 use octant_evidence::statements::SUMMARY;
@@ -91,7 +92,7 @@ pub(super) fn command(
     let now = program_sha256();
     let same_program = then.is_some() && then == now.as_deref();
     let mut found = match &manifest.campaign {
-        Some(_) => campaign(folder, count, seed)?,
+        Some(_) => campaign(folder, manifest, (count, seed), same_program)?,
         None => run(folder, manifest, same_program)?,
     };
     if found.verdict == Verdict::Pass && !same_program {
@@ -125,7 +126,7 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
         ));
     }
     // The clock has no effect on numbers.
-    scenario.realtime.by_clock = false;
+    let by_clock = std::mem::take(&mut scenario.realtime.by_clock);
     // Nor have the operator's answers.
     scenario.operator.clear();
     let opened = OpenedFmus::default();
@@ -158,9 +159,22 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
         return Err(Failure::bench("failed to run the scenario: no method ran"));
     };
-    let choice = Choice { day: Day::of_text(&manifest.ended).ok(), ..Choice::default() };
-    let now = assemble_with(&scenario, seed, primary, baseline, &choice)
+    let require = manifest.command_line.iter().any(|word| word == "--require");
+    let choice = Choice { require, day: Day::of_text(&manifest.ended).ok(), ..Choice::default() };
+    let tables = [
+        ("calibration.octcal", primary.table.as_ref().map(|table| table.to_bytes().to_vec())),
+        (
+            "baseline.octcal",
+            baseline.as_ref().and_then(|run| Some(run.table.as_ref()?.to_bytes().to_vec())),
+        ),
+    ];
+    let mut now = assemble_with(&scenario, seed, primary, baseline, &choice)
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
+    let mut derived = DerivedFiles { by_clock, tables, page: String::new(), junit: String::new() };
+    if derived.left_out(manifest).is_none() {
+        let (page, junit) = texts(&mut now, manifest)?;
+        derived = DerivedFiles { page, junit, ..derived };
+    }
     let json = now.summary.to_json().map_err(Failure::bench)?;
     let mut now: Value = serde_json::from_str(&json).map_err(Failure::bench)?;
     let mut then = then;
@@ -169,10 +183,20 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
         summary["pacing"] = Value::Null;
     }
     Ok(match reexecute::difference(&then, &now) {
-        None => Reexecuted::of(
-            Verdict::Pass,
-            vec!["the stream hash and every measure are the same".to_owned()],
-        ),
+        None => {
+            let mut told = vec!["the stream hash and every measure are the same".to_owned()];
+            let files = match same_program {
+                true => derived.differing(folder, manifest, place.path())?,
+                false => Vec::new(),
+            };
+            let verdict = if files.is_empty() { Verdict::Pass } else { Verdict::Fail };
+            let of = |name| format!("{name} isn't what the run gives");
+            told.extend(files.into_iter().map(of));
+            if let Some(reason) = derived.left_out(manifest).filter(|_| same_program) {
+                told.push(format!("report.html and junit.xml were not made again: {reason}"));
+            }
+            Reexecuted::of(verdict, told)
+        }
         // Other numerics are expected to give other bits: this shows nothing, and no alteration.
         // The same program always has the same version, whatever the summary states.
         Some(difference) => match differs(numerics_of(&then)).filter(|_| !same_program) {
@@ -182,13 +206,87 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     })
 }
 
+/// Files of a run that its content gives.
+struct DerivedFiles {
+    /// True if the run was by the clock.
+    by_clock: bool,
+    /// Calibration tables, by their names.
+    tables: [(&'static str, Option<Vec<u8>>); 2],
+    page: String,
+    junit: String,
+}
+
+impl DerivedFiles {
+    /// Returns why report and JUnit are not made again: they have something that isn't in the folder in that form.
+    fn left_out(&self, manifest: &Manifest) -> Option<&'static str> {
+        let words = &manifest.command_line;
+        if self.by_clock {
+            Some("the run was by the clock")
+        } else if !manifest.answers.is_empty() {
+            Some("a person took part")
+        } else if words.iter().any(|word| word.starts_with("--only-faults")) {
+            Some("faults of the scenario were left out")
+        } else {
+            None
+        }
+    }
+
+    /// Returns the names of the files in a folder that aren't these; `place` has the recordings of the run that was made
+    /// again.
+    fn differing(
+        &self,
+        folder: &Path,
+        manifest: &Manifest,
+        place: &Path,
+    ) -> Result<Vec<String>, Failure> {
+        let mut differing = Vec::new();
+        let mut compare = |name: &str, bytes: &[u8]| -> Result<(), Failure> {
+            let path = folder.join(name);
+            let then = std::fs::read(&path).map_err(|error| {
+                Failure::bench(format!("failed to read {}: {error}", path.display()))
+            })?;
+            if then != bytes {
+                differing.push(name.to_owned());
+            }
+            Ok(())
+        };
+        let is_there = |name: &str| manifest.files.iter().any(|file| file.path == name);
+        for (name, table) in &self.tables {
+            match table {
+                Some(bytes) if is_there(name) => compare(name, bytes)?,
+                _ => {}
+            }
+        }
+        if self.left_out(manifest).is_none() {
+            compare("junit.xml", self.junit.as_bytes())?;
+            compare("report.html", self.page.as_bytes())?;
+            // In simulated time a recording has nothing of the host.
+            for name in ["recording.mcap", "baseline.mcap"] {
+                let again = place.join(name);
+                if is_there(name) && again.exists() {
+                    let bytes = std::fs::read(&again).map_err(|error| {
+                        Failure::bench(format!("failed to read {}: {error}", again.display()))
+                    })?;
+                    compare(name, &bytes)?;
+                }
+            }
+        }
+        Ok(differing)
+    }
+}
+
 /// Reads the numerics version of a summary.
 fn numerics_of(summary: &Value) -> Option<u32> {
     summary.get("numerics")?.as_u64()?.try_into().ok()
 }
 
 /// Runs a sample of a campaign's cases again.
-fn campaign(folder: &Path, count: Count, seed: Option<u64>) -> Result<Reexecuted, Failure> {
+fn campaign(
+    folder: &Path,
+    manifest: &Manifest,
+    (count, seed): (Count, Option<u64>),
+    same_program: bool,
+) -> Result<Reexecuted, Failure> {
     let plan = Plan::read(&folder.join(FILE_NAME))?;
     // The sample must not be predictable for anyone who altered a result.
     let drawn = || RandomState::new().hash_one(std::process::id());
@@ -206,7 +304,21 @@ fn campaign(folder: &Path, count: Count, seed: Option<u64>) -> Result<Reexecuted
     told.extend(again.other_numerics.iter().cloned());
     told.extend(again.not_run.iter().map(|reason| format!("not possible: {reason}")));
     let bound = altered_at_most(again.of, again.same, CONFIDENCE);
-    let verdict = if !again.differing.is_empty() {
+    // Another program may write the same results in other words.
+    let files = match same_program {
+        true => evidence::differing(&plan, folder, manifest)?,
+        false => Vec::new(),
+    };
+    for name in &files {
+        told.push(format!("{name} isn't what plan, results and journal give"));
+    }
+    if same_program && files.is_empty() {
+        told.push(
+            "statistics, prediction, JUnit and page are what plan, results and journal give"
+                .to_owned(),
+        );
+    }
+    let verdict = if !(again.differing.is_empty() && files.is_empty()) {
         Verdict::Fail
     } else if !(again.not_run.is_empty() && again.other_numerics.is_empty()) || ran == 0 {
         Verdict::Inconclusive

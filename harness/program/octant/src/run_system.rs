@@ -163,7 +163,7 @@ pub(super) fn command(
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     write(&folder.path().join("summary.json"), &summary_json)?;
     let told = (summary.verdict, &summary.reasons[..]);
-    let xml = junit_of(&summary.system, seed, &summary.requirements, &summary.faults, told)
+    let xml = junit_of(&summary.system, seed, &summary.requirements, &summary.faults, told, None)
         .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
     write(&folder.path().join("junit.xml"), xml)?;
     if !results.messages.is_empty() {

@@ -199,7 +199,7 @@ fn a_fault_that_never_fires_leaves_the_run_inconclusive() {
     assert_eq!(run.summary.verdict, Verdict::Inconclusive);
     let reason = "fault spike-1 never fired: its trigger never came true";
     assert!(run.summary.reasons.iter().any(|r| r == reason), "{:?}", run.summary.reasons);
-    assert!(octant_score::junit::junit(&run.summary).unwrap().contains("fault spike-1"));
+    assert!(octant_score::junit::junit(&run.summary, None).unwrap().contains("fault spike-1"));
     let page = octant_report::run::render(&run.report);
     assert!(page.contains("spike-1") && page.contains(">Faults<"));
 }

@@ -79,7 +79,7 @@ fn a_scenario() {
 #[test]
 fn a_campaign_and_its_requirements() {
     let campaign = Campaign::load(&sample("campaign.toml")).unwrap();
-    assert_eq!((campaign.seed, campaign.replicates, campaign.factors.len()), (3, 2, 1));
+    assert_eq!((campaign.seed, campaign.replicates, campaign.factors.len()), (Some(3), 2, 1));
     let read = requirements::load(&sample("requirements.toml")).unwrap();
     let demand = read.get("NAV-2").unwrap().check().unwrap().ensemble.unwrap();
     assert_eq!((demand.pass, demand.confidence), (0.5, 0.6));

@@ -13,6 +13,7 @@ mod campaign_alike;
 mod campaign_bundle;
 #[cfg(unix)]
 mod campaign_emit;
+mod campaign_looks;
 mod campaign_objects;
 mod campaign_report;
 mod campaign_scale;

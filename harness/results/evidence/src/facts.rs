@@ -87,6 +87,15 @@ pub struct CampaignFacts {
     pub open_discrepancies: usize,
     /// BLAKE3 over all results.
     pub results_blake3: String,
+    /// Seed of the first replicate, and where it comes from; empty in older manifests.
+    #[serde(default)]
+    pub seed: String,
+    /// How its results are looked at; empty in older manifests.
+    #[serde(default)]
+    pub looks: String,
+    /// Numbers of entries of its journal; null in older manifests.
+    #[serde(default)]
+    pub journal: Option<JournalCounts>,
     /// SHA-256 of the program that wrote the report; `null` where it can't be read.
     pub program_sha256: Option<String>,
     /// Who made the results: program, host and operator, with the number of results of each; empty in older manifests.
@@ -125,4 +134,13 @@ pub struct FmuFacts {
     /// True if a process can hold only one instance.
     #[serde(skip)]
     pub only_once: bool,
+}
+
+/// Numbers of entries of the journal of a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JournalCounts {
+    /// All entries.
+    pub entries: usize,
+    /// Looks at the results.
+    pub looks: usize,
 }

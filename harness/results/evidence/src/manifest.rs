@@ -1,7 +1,7 @@
 //! `manifest.json`: origin of a run, versions, and the hashes of everything in its folder.
 
 pub use super::error::ManifestError;
-pub use super::facts::{CampaignFacts, FmuFacts, RunFacts};
+pub use super::facts::{CampaignFacts, FmuFacts, JournalCounts, RunFacts};
 pub use super::files::{FileHash, MANIFEST as FILE_NAME};
 pub use super::host::Machine;
 pub use super::program::{operator, program_sha256};
@@ -206,6 +206,10 @@ impl Manifest {
             ("octant", self.octant.clone()),
             ("numerics version", self.numerics.map_or("not known".to_owned(), |v| v.to_string())),
             ("source revision", git),
+            (
+                "program, SHA-256",
+                self.program_sha256.clone().unwrap_or_else(|| "not known".to_owned()),
+            ),
             ("compiler", self.rustc.clone().unwrap_or_else(|| "not known".to_owned())),
             ("host", format!("{}, {}, {cpu}, {} processors", host.name, host.os, host.cpus)),
             ("operator", self.operator.clone().unwrap_or_else(|| "not known".to_owned())),

@@ -74,10 +74,19 @@ pub fn of_run(data: &ReportData) -> Option<Certificate> {
     let shown = all.iter().filter(|result| is_of_heading(&result.measure));
     Some(Certificate {
         title: data.summary.scenario.clone(),
-        lines: Vec::new(),
+        lines: vec![origin(data)],
         verdict: data.summary.verdict,
         rows: shown.map(row).collect(),
     })
+}
+
+/// Line that says who made a run, when, with which program, and what its evidence rests on.
+fn origin(data: &ReportData) -> String {
+    let hash = data.summary.stream_hash.clone();
+    let own = [("seed", data.summary.seed.to_string()), ("stream hash", hash)];
+    let own = own.iter().map(|(name, value)| format!("{name}: {value}"));
+    let entries = data.provenance.entries.iter().map(|(name, value)| format!("{name}: {value}"));
+    entries.chain(own).collect::<Vec<_>>().join("; ")
 }
 
 /// Renders a certificate as the first page of a report.

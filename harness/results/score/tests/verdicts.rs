@@ -118,7 +118,7 @@ fn a_run_of_which_nothing_is_asked_is_none_and_no_pass() {
     let summary = judged(&[], &[]);
     assert_eq!(summary.verdict, Verdict::None);
     assert_eq!(summary.reasons, [NO_REQUIREMENT]);
-    let xml = junit(&summary).unwrap();
+    let xml = junit(&summary, None).unwrap();
     let document = roxmltree::Document::parse(&xml).unwrap();
     let skipped = document.descendants().find(|node| node.has_tag_name("skipped")).unwrap();
     assert_eq!(skipped.attribute("message"), Some(NO_REQUIREMENT));
@@ -295,14 +295,17 @@ fn a_summary_survives_its_file_and_a_newer_schema_is_refused() {
 
 #[test]
 fn junit_names_what_each_case_verifies_and_passes_nothing_inconclusive() {
-    let xml = junit(&judged(
-        &[
-            requirement("navigation.longitude_error_arcmin.max", Comparison::AtMost, 0.5),
-            requirement("navigation.nothing", Comparison::AtMost, 0.5),
-            requirement("navigation.radial_error_nmi.max", Comparison::AtMost, 5.0),
-        ],
-        &[],
-    ))
+    let xml = junit(
+        &judged(
+            &[
+                requirement("navigation.longitude_error_arcmin.max", Comparison::AtMost, 0.5),
+                requirement("navigation.nothing", Comparison::AtMost, 0.5),
+                requirement("navigation.radial_error_nmi.max", Comparison::AtMost, 5.0),
+            ],
+            &[],
+        ),
+        None,
+    )
     .unwrap();
     let document = roxmltree::Document::parse(&xml).unwrap();
     let cases: Vec<_> = document.descendants().filter(|n| n.has_tag_name("testcase")).collect();
@@ -315,12 +318,12 @@ fn junit_names_what_each_case_verifies_and_passes_nothing_inconclusive() {
         })
         .collect();
     assert_eq!(kinds, [Some("fail"), Some("inconclusive"), None, Some("fail")]);
-    let verifies: Vec<_> = document
-        .descendants()
-        .filter(|n| n.attribute("name") == Some("verifies"))
-        .map(|n| n.attribute("value").unwrap())
+    let outputs = document.descendants().filter(|n| n.has_tag_name("system-out"));
+    let verifies: Vec<_> = outputs
+        .filter_map(|n| n.text().unwrap().lines().next())
+        .filter(|line| line.starts_with("[[PROPERTY|verifies="))
         .collect();
-    assert_eq!(verifies, ["NAV-1"; 3]);
+    assert_eq!(verifies, ["[[PROPERTY|verifies=NAV-1]]"; 3]);
 }
 
 #[test]

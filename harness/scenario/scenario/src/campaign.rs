@@ -21,10 +21,10 @@
 //! ```
 
 use crate::error::{FileProblems, Problem};
-pub use crate::keys::Design;
 use crate::keys::{
     At, CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, Keys, LimitsKeys, MemberKeys,
 };
+pub use crate::keys::{Design, LookSpec};
 use crate::other_format;
 use octant_base::names::suggestion;
 use octant_toml_tree::{Node, Table, Value};
@@ -35,8 +35,8 @@ use std::path::{Path, PathBuf};
 pub struct Campaign {
     /// Name.
     pub title: String,
-    /// Seed of the draws, and of the first replicate.
-    pub seed: u64,
+    /// Seed of the draws, and of the first replicate; `None`: that of the plan.
+    pub seed: Option<u64>,
     /// Number of runs of every combination.
     pub replicates: u32,
     /// Design of the draws.
@@ -53,6 +53,8 @@ pub struct Campaign {
     pub limits: LimitsSpec,
     /// Early stopping.
     pub stop: Option<StopSpec>,
+    /// How often the results are looked at.
+    pub looks: LookSpec,
 }
 
 /// A scenario of a campaign.
@@ -234,6 +236,11 @@ fn read(keys: CampaignKeys, folder: &Path) -> Result<Campaign, Problem> {
         }
         correlations.push(correlation);
     }
+    if keys.stop.is_some() && *keys.looks != LookSpec::Once {
+        return Err(keys
+            .looks
+            .problem("found [stop] too, whose looks are counted already: expected one of both"));
+    }
     let LimitsKeys { time: time_s, memory_mib } = keys.limits;
     let stop = |EarlyStopKeys { requirement, pass, confidence, every }| StopSpec {
         requirement,
@@ -252,6 +259,7 @@ fn read(keys: CampaignKeys, folder: &Path) -> Result<Campaign, Problem> {
         correlations,
         limits: LimitsSpec { time_s, memory_mib },
         stop: keys.stop.map(stop),
+        looks: keys.looks.value,
     })
 }
 

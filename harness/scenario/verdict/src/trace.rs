@@ -284,7 +284,7 @@ fn row(requirement: &Requirement, cases: GrowingRow) -> TraceRow {
     }
 }
 
-/// Combines the checks of a requirement.
+/// Combines the checks of a requirement, by bounds that hold for data that is looked at once.
 ///
 /// Without a required probability the worst check decides. With one, independent draws are counted, not
 /// checks: a draw passes if all of its checks did. The verdict is pass if the lower bound of the
@@ -297,6 +297,38 @@ pub fn judge(
     ensemble: Option<EnsembleRequirement>,
     counts: VerdictCounts,
     draws: DrawCounts,
+) -> (Verdict, String) {
+    judge_by(ensemble, counts, draws, &ONCE)
+}
+
+/// Bounds of the probability that a draw passes.
+#[derive(Clone, Copy, Debug)]
+pub struct ClaimBounds {
+    /// Lower bound after so many failures in so many draws, with a one-sided confidence.
+    pub lower: fn(u64, u64, f64) -> f64,
+    /// Upper bound.
+    pub upper: fn(u64, u64, f64) -> f64,
+    /// Number of looks, each of which has that part of the error.
+    pub looks: u64,
+    /// How they hold, behind the claim.
+    pub words: &'static str,
+}
+
+/// Bounds of data that is looked at once.
+pub const ONCE: ClaimBounds = ClaimBounds {
+    lower: proportion::success_lower_bound,
+    upper: proportion::success_upper_bound,
+    looks: 1,
+    words: "",
+};
+
+/// Combines the checks of a requirement as [`judge`] does, by other bounds.
+#[must_use]
+pub fn judge_by(
+    ensemble: Option<EnsembleRequirement>,
+    counts: VerdictCounts,
+    draws: DrawCounts,
+    bounds: &ClaimBounds,
 ) -> (Verdict, String) {
     let (VerdictCounts { inconclusive, fail, error, missing, .. }, all) = (counts, counts.all());
     if all == 0 {
@@ -319,25 +351,27 @@ pub fn judge(
         };
     };
     let DrawCounts { passed, not_passed, unknown, open, .. } = draws;
-    let lower = proportion::success_lower_bound(not_passed, draws.known(), confidence);
+    let of_look = 1.0 - (1.0 - confidence) / bounds.looks.max(1) as f64;
+    let lower = (bounds.lower)(not_passed, draws.known(), of_look);
     // A draw without a result might pass, and one that came to nothing might have: the verdict is fail only
     // if that wouldn't help.
-    let upper = proportion::success_upper_bound(draws.failed(), draws.all(), confidence);
+    let upper = (bounds.upper)(draws.failed(), draws.all(), of_look);
     let percent = |p: f64| format!("{:.2} %", 100.0 * p);
     if upper < required {
         let told = format!(
-            "{} of {} failed: with {} confidence the probability that a draw passes is at most {}, \
+            "{} of {} failed: with {} confidence the probability that a draw passes is at most {}{}, \
              required {}",
             draws.failed(),
             counted(draws.all()),
             percent(confidence),
             percent(upper),
+            bounds.words,
             percent(required)
         );
         return (Verdict::Fail, told);
     }
     let mut found = claim(draws, lower, confidence);
-    found += &format!(", required {}", percent(required));
+    found += &format!("{}, required {}", bounds.words, percent(required));
     if unknown > 0 {
         found += &format!("; {} came to nothing", counted(unknown));
     }

@@ -6,6 +6,7 @@
 //! - [`radius`] has the distance of a normal error in the plane
 //! - [`cluster`] finds the independent draws among rows, the unit of inference
 //! - [`quantile`] gives distribution-free bounds, [`proportion`] bounds of a pass probability
+//! - [`looks`] has claims on a pass probability from data that is looked at while it grows
 //! - [`rate`] has the radial error rate and the time-RMS, [`mod@envelope`] percentiles over time
 //! - [`rank`] finds the factors that an output is sensitive to, [`outlier`] the runs that stand out
 //! - [`paired`] compares two sets of runs seed by seed
@@ -22,6 +23,7 @@ pub mod cluster;
 pub mod convergence;
 pub mod draw;
 pub mod envelope;
+pub mod looks;
 pub mod multiple;
 pub mod normal;
 pub mod outlier;

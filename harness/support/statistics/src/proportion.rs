@@ -72,7 +72,7 @@ fn first(runs: u64, shown: impl Fn(u64) -> bool) -> Option<u64> {
     Some(high)
 }
 
-fn further(runs: u64, shown: impl Fn(u64) -> bool) -> Needed {
+pub(crate) fn further(runs: u64, shown: impl Fn(u64) -> bool) -> Needed {
     first(runs, shown).map_or(Needed::CannotBeMet, |all| Needed::Runs(all - runs))
 }
 

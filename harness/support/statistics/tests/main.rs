@@ -9,5 +9,6 @@ mod convergence;
 mod coverage;
 mod distribution;
 mod draws;
+mod looks;
 mod multiple;
 mod reference;

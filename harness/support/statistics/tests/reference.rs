@@ -9,9 +9,13 @@ use octant_statistics::proportion::{
 use octant_statistics::{normal, paired, quantile, rank, sample};
 use serde_json::Value as Json;
 
+pub(super) fn golden_of(name: &str) -> Json {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../fixtures/golden/");
+    serde_json::from_str(&std::fs::read_to_string(format!("{folder}{name}")).unwrap()).unwrap()
+}
+
 fn golden() -> Json {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../fixtures/golden/statistics.json");
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    golden_of("statistics.json")
 }
 
 fn rows(of: &str) -> Vec<Json> {
@@ -27,7 +31,7 @@ fn numbers(value: &Json) -> Vec<f64> {
 }
 
 #[track_caller]
-fn assert_near(found: f64, expected: f64, relative: f64) {
+pub(super) fn assert_near(found: f64, expected: f64, relative: f64) {
     let error = (found - expected).abs();
     assert!(error <= relative * expected.abs().max(1e-300), "found {found}, expected {expected}");
 }

@@ -1,6 +1,7 @@
 //! Events and outcome of an execution, and reasons why there is none.
 
 use super::process::TRIES;
+use crate::journal::JournalError;
 use crate::judge::status::StatusError;
 use crate::plan::PlanError;
 use crate::store::error::{PartError, ResultPlace};
@@ -72,6 +73,9 @@ pub enum ExecuteError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The journal of the campaign can't be used.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// An existing result doesn't belong to its case, or contradicts itself.
     #[error(transparent)]
     Result(#[from] StatusError),
@@ -108,6 +112,7 @@ impl Failing for ExecuteError {
     fn kind(&self) -> FailureKind {
         match self {
             Self::Plan(error) => error.kind(),
+            Self::Journal(error) => error.kind(),
             Self::Foreign { .. } | Self::Running { .. } => FailureKind::Input,
             Self::Result(_)
             | Self::NotKept(_)

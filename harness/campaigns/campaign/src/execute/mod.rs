@@ -15,6 +15,7 @@ pub use crate::plan::shard::{Shard, ShardError};
 pub use execution::{CaseDone, ExecuteError, ExecutionEvent, ExecutionSummary};
 
 use super::plan::CasePlaces;
+use crate::journal::{Journal, JournalEvent};
 use crate::judge::status::StatusError;
 use crate::plan::{Case, Plan};
 use crate::store::error::ResultPlace;
@@ -24,6 +25,7 @@ use alike::groups;
 use octant_base::pool::in_order_with;
 use process::TRIES;
 use running::Running;
+pub use running::remove_locks;
 use selection::CaseSelection;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -67,6 +69,14 @@ pub fn execute(
     let mut results = open(options.folder)?;
     refuse_foreign(plan, options.folder, &results)?;
     clean(options.folder);
+    if !results.journal.is_there {
+        let (results, plan) = (results.ids().count(), plan.in_journal());
+        Journal::append(options.folder, JournalEvent::Begun { results, plan })?;
+    }
+    if let Some(event) = options.selection.in_journal(plan.cases.len()) {
+        Journal::append(options.folder, event)?;
+    }
+    note_repetitions(plan, options, &results)?;
     if options.again {
         let mine = plan
             .cases
@@ -135,6 +145,34 @@ pub fn execute(
     let mut differing: Vec<ResultPlace> = done.into_iter().flatten().collect();
     differing.sort();
     Ok(ExecutionSummary { run, skipped, left: open.len() - run, differing })
+}
+
+/// Notes in the journal which cases are run again although they have a result.
+fn note_repetitions(
+    plan: &Plan,
+    options: &ExecuteOptions<'_>,
+    results: &CampaignResults,
+) -> Result<(), ExecuteError> {
+    let (mut forgotten, mut cases) = (0, Vec::new());
+    let of = |(index, case)| {
+        (options.shard.has(index) && options.selection.picks(index)).then_some(case)
+    };
+    let mine = plan.cases.iter().enumerate().filter_map(of).filter(|_| options.again);
+    for case in mine {
+        let errors = results.errors(&case.id).map_err(StatusError)?.len();
+        forgotten += errors;
+        cases.extend((errors > 0).then_some(case.id.as_str()));
+    }
+    let repeated = options.selection.repeated().filter(|index| options.shard.has(*index));
+    let repeated: Vec<&str> =
+        (repeated.filter_map(|index| plan.cases.get(index))).map(|case| case.id.as_str()).collect();
+    let count = repeated.len();
+    cases.extend(repeated);
+    if !cases.is_empty() {
+        let event = JournalEvent::rerun(forgotten, count, cases.into_iter());
+        Journal::append(options.folder, event)?;
+    }
+    Ok(())
 }
 
 fn open(folder: &Path) -> Result<CampaignResults, ExecuteError> {

@@ -1,6 +1,7 @@
 //! Selection of cases of a plan: by pattern, and by their results.
 
 use super::case;
+use crate::journal::JournalEvent;
 use crate::plan::factor_values::FactorValue;
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
@@ -16,6 +17,8 @@ pub struct CaseSelection {
     /// Places of cases that are run a second time. The stored result stays, and the new one has to
     /// be the same.
     repeated: BTreeSet<usize>,
+    /// Patterns of the cases that are picked.
+    patterns: Vec<String>,
 }
 
 /// Error of a pattern that no case matches.
@@ -59,7 +62,7 @@ impl CaseSelection {
                 examples: plan.cases.first().map(names).unwrap_or_default(),
             });
         }
-        Ok(Self { picked: Some(picked), repeated: BTreeSet::new() })
+        Ok(Self { picked: Some(picked), repeated: BTreeSet::new(), patterns: patterns.to_vec() })
     }
 
     /// Adds a repetition of the selected cases whose stored result has failed. Cases that ended as
@@ -104,6 +107,18 @@ impl CaseSelection {
     #[must_use]
     pub fn has_repeated(&self) -> bool {
         !self.repeated.is_empty()
+    }
+
+    /// Returns what a journal says of it, if it leaves cases out of a plan of `of` cases.
+    #[must_use]
+    pub fn in_journal(&self, of: usize) -> Option<JournalEvent> {
+        let cases = self.picked.as_ref()?.len();
+        Some(JournalEvent::Restricted { only: self.patterns.clone(), cases, of })
+    }
+
+    /// Returns the places of the cases that are run although they have a result.
+    pub(super) fn repeated(&self) -> impl Iterator<Item = usize> {
+        self.repeated.iter().copied()
     }
 
     /// Ends the repetitions: they were run.

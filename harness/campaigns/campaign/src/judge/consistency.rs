@@ -3,6 +3,7 @@
 
 use super::status;
 use super::twins::{SharedTwins, TwinsSaid};
+use crate::journal::FILE_NAME as JOURNAL;
 use crate::merge::chain;
 use crate::merge::merged;
 use crate::merge::results::TABLES;
@@ -23,6 +24,7 @@ use serde_json::Value;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::SystemTime;
 
 /// Checks the folder of a campaign, and derives its verdict again from its results.
 #[must_use]
@@ -94,6 +96,9 @@ fn derive(
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
         Err(error) => return Err(format!("{STATISTICS}: {error}")),
     }
+    let cases = || plan.cases.iter().take(end);
+    let first = cases().filter_map(|case| stored.time(&case.id)).min();
+    stated.contradictions.extend(of_journal(&stored, facts, first));
     stated.contradictions.extend(limits);
     if let Some((_, reason)) = error {
         return Err(reason);
@@ -103,6 +108,32 @@ fn derive(
         chain::check(&plan, &stored, table).map_err(|error| error.to_string())?;
     }
     Ok(())
+}
+
+/// Describes where the journal contradicts results and manifest. Folders of older versions have none.
+fn of_journal(
+    stored: &CampaignResults,
+    facts: &CampaignFacts,
+    first_result: Option<SystemTime>,
+) -> Vec<String> {
+    let journal = &stored.journal;
+    let Some(counts) = facts.journal else { return Vec::new() };
+    if !journal.is_there {
+        return vec![format!(
+            "{JOURNAL} is missing, the manifest tells of {} entries",
+            counts.entries
+        )];
+    }
+    let mut found = journal.contradictions(&facts.plan, stored.taken_back(), first_result);
+    let looks = journal.entries.iter().filter(|entry| entry.is_look()).count();
+    let now = [journal.entries.len(), looks];
+    for (what, then, now) in [("entries", counts.entries, now[0]), ("looks", counts.looks, now[1])]
+    {
+        if then != now {
+            found.push(format!("{JOURNAL} has {now} {what}, the manifest tells of {then}"));
+        }
+    }
+    found
 }
 
 /// Hash and findings of all results of a campaign.

@@ -2,13 +2,14 @@
 //! folder says the same.
 //!
 //! [`status`] is the state of a campaign, [`trace`] links its requirements to cases and results, [`stop`] ends it
-//! early, [`independence`] groups cases into independent draws, [`consistency`] compares the files of its folder; `twins` compares
-//! the twins that cases share.
+//! early, [`looks`] are those at its results, [`independence`] groups cases into independent draws, [`consistency`] compares the
+//! files of its folder; `twins` compares the twins that cases share.
 
 mod case_states;
 pub mod consistency;
 pub(crate) mod except_requirements;
 pub mod independence;
+pub mod looks;
 pub mod status;
 pub mod stop;
 pub mod trace;

@@ -2,6 +2,7 @@
 
 use super::case_states::{CaseState, checked, each_state};
 use super::independence::{self, Shown};
+use super::looks::{JudgedDraws, LookState};
 use super::stop::{self, StopDecision};
 use crate::execute::case::ResultError;
 use crate::plan::shard::Shard;
@@ -13,10 +14,10 @@ use octant_base::number::plain;
 use octant_base::pool::spawn;
 use octant_score::numerics::differs;
 use octant_statistics::cluster::{DrawCounts, RowResult};
-use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
+use octant_statistics::proportion::Needed;
 use octant_verdict::Verdict;
 use octant_verdict::requirement::EnsembleRequirement;
-use octant_verdict::trace::{VerdictCounts, judge};
+use octant_verdict::trace::VerdictCounts;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -50,6 +51,9 @@ pub struct CampaignStatus {
     pub besides: Verdict,
     /// Status of each requirement.
     pub requirements: BTreeMap<String, RequirementStatus>,
+    /// Statement on all requirements together; null without one that asks for a probability.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint: Option<JointStatement>,
     /// Requirements that no run can verify.
     pub not_by_test: Vec<String>,
     /// Reasons in the accounts of the documents of requirements why no campaign on them passes.
@@ -63,6 +67,8 @@ pub struct CampaignStatus {
     pub numerics: Vec<String>,
     /// Reason why no more cases are run; null if all are.
     pub stopped: Option<String>,
+    /// Looks at the results.
+    pub looks: LookState,
 }
 
 /// Status of a requirement over the cases.
@@ -78,9 +84,58 @@ pub struct RequirementStatus {
     pub draws: DrawCounts,
     /// Requirement on all cases together; null if every case must pass.
     pub ensemble: Option<EnsembleRequirement>,
-    /// Further draws that suffice if all of them pass; null if nothing is required of them
-    /// together.
+    /// Further draws that suffice if all of them pass; null if nothing is required of them together. Unless the campaign
+    /// is looked at openly they have to be those of a new plan, which shows it with as many failures.
     pub needed: Option<Needed>,
+    /// Lower bound of the probability that a draw passes; null if nothing is required of the draws together.
+    #[serde(skip)]
+    pub bound: Option<f64>,
+}
+
+/// Statement on all requirements together, beside those on each.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointStatement {
+    /// Number of requirements.
+    pub requirements: usize,
+    /// Draws that pass if all of their checks of all requirements do.
+    pub draws: DrawCounts,
+    /// Confidence of the bound, one-sided: the largest that a requirement asks for.
+    pub confidence: f64,
+    /// Lower bound of the probability that a draw passes all of its checks, by the way in which the campaign is looked at;
+    /// null without a result.
+    pub lower_bound: Option<f64>,
+    /// Claims on single requirements that ask for a probability.
+    pub claims: usize,
+    /// Confidence with which all of these claims hold together, at least (Bonferroni).
+    pub together: f64,
+}
+
+impl JointStatement {
+    /// Renders it as sentences.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let Self { requirements, draws, confidence, lower_bound, claims, together } = self;
+        let mut text = match lower_bound {
+            None => "no draw has a result".to_owned(),
+            Some(lower) => format!(
+                "{} of {} independent draws passed every check of {requirements} requirement{}: with {:.2} % confidence \
+                 a draw passes all of them with a probability of at least {:.2} %",
+                draws.passed,
+                draws.known(),
+                if *requirements == 1 { "" } else { "s" },
+                100.0 * confidence,
+                (1e4 * lower).floor() / 1e2
+            ),
+        };
+        if *claims > 1 {
+            _ = write!(
+                text,
+                "; the {claims} claims on single requirements hold together with a confidence of at least {:.2} %",
+                100.0 * together
+            );
+        }
+        text
+    }
 }
 
 /// Case that isn't a pass.
@@ -107,21 +162,23 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, St
     of_results(plan, &CampaignResults::open(folder)?, shard)
 }
 
-/// Determines the state of the campaign in a folder. Its results are looked for while its plan is read.
+/// Determines the state of the campaign in a folder, with its plan. Its results are looked for while its plan is read.
 ///
 /// # Errors
 /// If the plan can't be read; the inner error: if an existing result can't be read.
 pub fn of_folder<E>(
     folder: &Path,
     read_plan: impl FnOnce() -> Result<Plan, E>,
-) -> Result<Result<CampaignStatus, StatusError>, E> {
+) -> Result<(Plan, Result<CampaignStatus, StatusError>), E> {
     let (plan, results) = std::thread::scope(|scope| {
         let results = spawn(scope, || CampaignResults::open(folder));
         (read_plan(), results.join())
     });
     let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let plan = plan?;
-    Ok(results.map_err(StatusError).and_then(|found| of_results(&plan, &found, Shard::WHOLE)))
+    let found = results.map_err(StatusError);
+    let found = found.and_then(|found| of_results(&plan, &found, Shard::WHOLE));
+    Ok((plan, found))
 }
 
 /// Determines the state of a part of a campaign from results.
@@ -133,6 +190,15 @@ pub fn of_results(
     results: &CampaignResults,
     shard: Shard,
 ) -> Result<CampaignStatus, StatusError> {
+    let decision = plan.stop.as_ref().map(|rule| decide_by(plan, results, rule)).transpose()?;
+    let end = decision.map_or(plan.cases.len(), |decision| decision.end(plan.cases.len()));
+    let is_decided =
+        decision.is_some_and(|decision| !matches!(decision, StopDecision::Open { .. }));
+    let has = |case: &Case| results.has(&case.id);
+    let mut looks = LookState::of(plan, &results.journal, end, is_decided, has);
+    if shard != Shard::WHOLE {
+        looks = looks.of_part(plan.cases.len());
+    }
     let mut status = CampaignStatus {
         title: plan.title.clone(),
         plan: plan.id.clone(),
@@ -144,20 +210,14 @@ pub fn of_results(
         verdicts: BTreeMap::new(),
         besides: Verdict::Pass,
         requirements: BTreeMap::new(),
+        joint: None,
         not_by_test: plan.not_by_test.clone(),
         doubts: plan.accounts.iter().flat_map(Account::doubts).collect(),
         bad: Vec::new(),
         differing: Vec::new(),
         numerics: Vec::new(),
-        stopped: None,
-    };
-    let end = match &plan.stop {
-        None => plan.cases.len(),
-        Some(rule) => {
-            let decision = decide_by(plan, results, rule)?;
-            status.stopped = in_words(rule, decision);
-            decision.end(plan.cases.len())
-        }
+        stopped: plan.stop.as_ref().zip(decision).and_then(|(rule, found)| in_words(rule, found)),
+        looks,
     };
     let mut tally = StatusTally::of(plan);
     each_state(
@@ -177,7 +237,8 @@ pub fn of_results(
     status.draws = draws.iter().max().map_or(0, |last| *last as usize + 1);
     let idle = independence::idle(plan, looked());
     (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
-    status.requirements = tally.requirements(&draws);
+    status.joint = tally.joint(&draws, &status.looks);
+    status.requirements = tally.requirements(&draws, &status.looks);
     Ok(status)
 }
 
@@ -187,6 +248,8 @@ struct StatusTally<'p> {
     requirements: BTreeMap<&'p str, RequirementTally>,
     streams: Vec<Option<StreamKey>>,
     numerics: BTreeMap<Option<u32>, usize>,
+    /// All checks of each case, as those of one requirement.
+    all: RequirementTally,
 }
 
 /// Checks of a requirement so far.
@@ -217,10 +280,11 @@ impl RequirementTally {
         self.shown.push(place.and_then(|place| u8::try_from(place).ok()).unwrap_or(0));
     }
 
-    /// Returns the draw of each case that checks it, and its result.
-    fn rows(&self, draws: &[u32]) -> impl Iterator<Item = (usize, RowResult)> {
+    /// Returns the place of each case that checks it, its draw, and its result.
+    fn rows(&self, draws: &[u32]) -> impl Iterator<Item = (usize, usize, RowResult)> + Clone {
         let shown = self.shown.iter().map(|place| SHOWN[usize::from(*place)]);
-        draws.iter().zip(shown).filter_map(|(draw, shown)| Some((*draw as usize, shown?)))
+        let rows = draws.iter().zip(shown).enumerate();
+        rows.filter_map(|(place, (draw, shown))| Some((place, *draw as usize, shown?)))
     }
 }
 
@@ -233,7 +297,13 @@ impl<'p> StatusTally<'p> {
             .chain(of_scenarios)
             .map(|id| (id.as_str(), RequirementTally::default()))
             .collect();
-        Self { plan, requirements, streams: Vec::new(), numerics: BTreeMap::new() }
+        Self {
+            plan,
+            requirements,
+            streams: Vec::new(),
+            numerics: BTreeMap::new(),
+            all: RequirementTally::default(),
+        }
     }
 
     fn add(&mut self, case: &Case, state: Option<CaseState>, status: &mut CampaignStatus) {
@@ -243,6 +313,9 @@ impl<'p> StatusTally<'p> {
         let checked = checked(plan, case);
         let Some(state) = state else {
             status.open += 1;
+            if !checked.is_empty() {
+                self.all.show(number, RowResult::Open);
+            }
             for id in checked {
                 let tally = self.requirements.entry(id).or_default();
                 tally.counts.missing += 1;
@@ -256,6 +329,9 @@ impl<'p> StatusTally<'p> {
         let is_counted = !checked.is_empty() && checked.iter().all(counted);
         if !(is_counted && state.refused_alone) {
             status.besides = status.besides.worst(state.besides);
+        }
+        if let Some(worst) = state.checks.iter().map(|(_, result, _)| *result).max() {
+            self.all.show(number, worst);
         }
         for (id, (verdict, result, why)) in checked.iter().zip(&state.checks) {
             let tally = self.requirements.entry(id).or_default();
@@ -284,19 +360,35 @@ impl<'p> StatusTally<'p> {
         }
     }
 
+    /// States what the draws show of all requirements together, where one asks for a probability.
+    fn joint(&self, draws: &[u32], looks: &LookState) -> Option<JointStatement> {
+        let asked = self.requirements.keys().filter_map(|id| self.plan.ensemble(id));
+        let asked: Vec<f64> = asked.map(|ensemble| ensemble.confidence).collect();
+        let confidence = asked.iter().copied().max_by(f64::total_cmp)?;
+        let error: f64 = asked.iter().map(|confidence| 1.0 - confidence).sum();
+        let (draws, lower_bound) = looks.joint(confidence, self.all.rows(draws));
+        Some(JointStatement {
+            requirements: self.requirements.len(),
+            draws,
+            confidence,
+            lower_bound,
+            claims: asked.len(),
+            together: (1.0 - error).max(0.0),
+        })
+    }
+
     /// Judges each requirement by the draws of the cases.
-    fn requirements(self, draws: &[u32]) -> BTreeMap<String, RequirementStatus> {
+    fn requirements(self, draws: &[u32], looks: &LookState) -> BTreeMap<String, RequirementStatus> {
         let of = |(id, tally): (&str, RequirementTally)| {
             let (ensemble, counts) = (self.plan.ensemble(id), tally.counts);
-            let draws = DrawCounts::of(tally.rows(draws));
-            let (verdict, mut reason) = judge(ensemble, counts, draws);
+            let found = looks.judge(ensemble, counts, tally.rows(draws));
+            let JudgedDraws { verdict, mut reason, draws, needed, bound } = found;
             if let (true, Some(why)) = (verdict != Verdict::Pass, &tally.why_unknown) {
                 _ = write!(reason, "; {why}");
             }
-            let needed = ensemble.map(|EnsembleRequirement { pass, confidence }| {
-                further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
-            });
-            (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
+            let status =
+                RequirementStatus { verdict, reason, counts, draws, ensemble, needed, bound };
+            (id.to_owned(), status)
         };
         self.requirements.into_iter().map(of).collect()
     }
@@ -403,8 +495,9 @@ impl CampaignStatus {
             self.verdict().name(),
             self.cases - self.open,
             self.cases,
-            counts(&self.verdicts)
+            if self.looks.is_due { counts(&self.verdicts) } else { "not looked at yet".to_owned() }
         );
+        _ = writeln!(text, "  {}", self.looks.in_words());
         let many = |count: usize| if count == 1 { "" } else { "s" };
         _ = writeln!(text, "  {} independent draw{}", self.draws, many(self.draws));
         for found in self.idle_in_words() {
@@ -414,6 +507,14 @@ impl CampaignStatus {
             _ = writeln!(text, "  {id}: {}: {}", requirement.verdict.name(), requirement.reason);
             match requirement.needed {
                 None | Some(Needed::Runs(0)) => {}
+                Some(Needed::Runs(runs)) if !self.looks.is_open() => {
+                    let plan = requirement.draws.known() + runs;
+                    _ = writeln!(
+                        text,
+                        "    draws that are added to this plan don't count; a new plan with {plan} draws shows it with as \
+                         many failures"
+                    );
+                }
                 Some(Needed::Runs(runs)) => {
                     _ = writeln!(
                         text,
@@ -424,6 +525,9 @@ impl CampaignStatus {
                     text += "    no number of further draws can show it\n";
                 }
             }
+        }
+        if let Some(joint) = self.joint.as_ref().filter(|joint| joint.requirements > 1) {
+            _ = writeln!(text, "  all together: {}", joint.in_words());
         }
         if !self.not_by_test.is_empty() {
             let ids = self.not_by_test.join(", ");

@@ -6,9 +6,9 @@
 //! K-th of the allowed error (Bonferroni), and all together keep the confidence.
 
 use super::independence::Shown;
+use crate::plan::looks::at_each_of;
 use crate::plan::{Case, Plan, StopRule};
 use octant_statistics::cluster::{Growing, RowResult};
-use octant_statistics::proportion::Demand;
 use std::collections::HashMap;
 
 /// Decision about the rest of a campaign.
@@ -53,9 +53,7 @@ pub fn decide(
     shown: impl Fn(&Case) -> Option<Shown>,
 ) -> StopDecision {
     let every = usize::try_from(rule.every).unwrap_or(usize::MAX).max(1);
-    let looks = plan.cases.len().div_ceil(every).max(1);
-    let confidence = 1.0 - (1.0 - rule.demand.confidence) / looks as f64;
-    let demand = Demand { confidence, ..rule.demand };
+    let demand = at_each_of(rule.demand, rule.looks(plan.cases.len()));
     let checks = |scenario: &str| {
         let found = plan.scenarios.iter().find(|planned| planned.id == scenario);
         found.is_some_and(|planned| planned.requirements.contains(&rule.requirement))

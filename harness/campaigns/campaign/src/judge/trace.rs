@@ -1,6 +1,7 @@
 //! Traces the requirements of a campaign to its cases and their results, and back.
 
 use super::independence;
+use super::status::CampaignStatus;
 use crate::execute::case::ResultError;
 use crate::plan::requirements;
 use crate::plan::{Case, Plan, PlanError};
@@ -10,7 +11,7 @@ use octant_scenario::campaign::Campaign;
 use octant_verdict::requirement::{Check, Limit, Requirement, Requirements, Verification};
 use octant_verdict::trace::{CampaignTrace, GrowingTrace, TracedCase, TracedResult as Traced};
 use octant_verdict::{Comparison, Verdict};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads the requirements of the campaign of a plan; empty if it names no file of them.
 ///
@@ -18,6 +19,14 @@ use std::path::Path;
 /// If the campaign or its file can't be read, or the file was changed after the campaign was
 /// planned.
 pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
+    match (requirements_in_place(plan), &plan.copies) {
+        (Err(_), Some(copies)) => planned_ones(plan, copies.join("requirements.toml")),
+        (found, _) => found,
+    }
+}
+
+/// Reads the requirements of the campaign of a plan where they were planned.
+fn requirements_in_place(plan: &Plan) -> Result<Requirements, PlanError> {
     let path = match &plan.bundled {
         Some(bundled) => bundled.requirements.as_ref().map(|planned| planned.file.clone()),
         None => Campaign::load(&plan.campaign)?.requirements,
@@ -29,6 +38,11 @@ pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
         let reason = "it names no file of requirements, and was planned with one".to_owned();
         return Err(PlanError::Contradiction { campaign: plan.campaign.clone(), reason });
     };
+    planned_ones(plan, path)
+}
+
+/// Reads requirements that have to be those of a plan.
+fn planned_ones(plan: &Plan, path: PathBuf) -> Result<Requirements, PlanError> {
     let requirements = requirements::load(&path)?;
     let is_planned = requirements::planned(&requirements) == plan.requirements
         && requirements.accounts == plan.accounts;
@@ -133,6 +147,18 @@ pub(crate) fn first_by(
         growing.add(&TracedCase { draw: *draw as usize, ..case });
     }
     Ok(growing.trace())
+}
+
+/// Takes the verdicts of requirements on all draws from the state of the campaign, which knows the looks.
+pub fn take_verdicts(trace: &mut CampaignTrace, status: &CampaignStatus) {
+    for row in &mut trace.requirements {
+        let judged = status.requirements.get(&row.id);
+        if let Some(judged) = judged.filter(|judged| judged.ensemble.is_some()) {
+            row.verdict = Some(judged.verdict);
+            row.reason.clone_from(&judged.reason);
+            row.draws = judged.draws;
+        }
+    }
 }
 
 /// Traces a case, whose draw isn't known yet, and returns its stream.

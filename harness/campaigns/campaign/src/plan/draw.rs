@@ -29,11 +29,11 @@ impl Draws {
     }
 }
 
-/// Computes the draws of a campaign.
+/// Computes the draws of a campaign with a seed.
 ///
 /// # Errors
 /// The reason, as text, if its design can't be made.
-pub(crate) fn draws(campaign: &Campaign) -> Result<Draws, String> {
+pub(crate) fn draws(campaign: &Campaign, seed: u64) -> Result<Draws, String> {
     let drawn: Vec<(usize, Factor)> = (campaign.factors.iter().enumerate())
         .filter_map(|(index, factor)| Some((index, drawn(&factor.name, &factor.levels)?)))
         .collect();
@@ -55,13 +55,13 @@ pub(crate) fn draws(campaign: &Campaign) -> Result<Draws, String> {
         // One after another: there can be millions.
         Design::MonteCarlo => {
             for replicate in 0..u64::from(campaign.replicates) {
-                let row = monte_carlo(&factors, &correlations, campaign.seed, replicate);
+                let row = monte_carlo(&factors, &correlations, seed, replicate);
                 add(&row.map_err(|error| error.to_string())?);
             }
         }
         Design::LatinHypercube => {
             let runs = campaign.replicates as usize;
-            let rows = latin_hypercube(&factors, &correlations, campaign.seed, runs);
+            let rows = latin_hypercube(&factors, &correlations, seed, runs);
             rows.map_err(|error| error.to_string())?.iter().for_each(|row| add(row));
         }
     }

@@ -1,5 +1,6 @@
 //! Reasons why there is no plan.
 
+use crate::journal::JournalError;
 use octant_base::failing::{Failing, FailureKind};
 use octant_scenario::FileProblems;
 use octant_verdict::RequirementsError;
@@ -24,6 +25,9 @@ pub enum PlanError {
         /// Error of the operating system.
         source: std::io::Error,
     },
+    /// The journal of the campaign can't be used.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// The campaign contradicts itself.
     #[error("plan {campaign}: {reason}")]
     Contradiction {
@@ -49,6 +53,7 @@ impl Failing for PlanError {
             Self::System { action: "create" | "create a file in" | "write", .. } => {
                 FailureKind::Bench
             }
+            Self::Journal(error) => error.kind(),
             Self::System { .. }
             | Self::File(_)
             | Self::Requirements(_)

@@ -3,6 +3,7 @@
 use super::case_id::{CaseId, NoCaseId};
 use super::draw::{At, Draws};
 use super::factor_values::FactorValue;
+use super::looks::{Looks, seed_of};
 use super::possible::{key_of, why_not};
 use super::progress::{PlanStage, Tell, told};
 use super::requirements::{self, Planned};
@@ -28,6 +29,8 @@ fn level_of(factors: &[FactorSpec], cell: u64, index: usize) -> usize {
 /// A campaign file, from which the cases of a plan are made.
 pub(super) struct PlanMaker {
     pub(super) campaign: Campaign,
+    /// Seed of the draws, and of the first replicate.
+    seed: u64,
     path: PathBuf,
     /// Number of cells of the grid.
     pub(super) grid: u64,
@@ -65,7 +68,6 @@ impl PlanMaker {
                 factor.name
             )));
         }
-        let draws = super::draw::draws(&campaign).map_err(&contradiction)?;
         let file = campaign.requirements.as_deref().map(requirements::load).transpose()?;
         let of_file = file.as_ref().map(requirements::planned).unwrap_or_default();
         let by_test = |id: &str| of_file.iter().any(|planned| planned.check.id == id);
@@ -76,9 +78,27 @@ impl PlanMaker {
         let scenarios = (campaign.scenarios.iter())
             .map(|member| planned(member, &of_file, &campaign.factors, path))
             .collect::<Result<Vec<_>, _>>()?;
+        let stop = campaign.stop.clone().map(StopRule::from);
+        let factors: Vec<String> = factor_names(&campaign);
+        let looks = Looks::from(campaign.looks);
+        let seed = campaign.seed.unwrap_or_else(|| {
+            seed_of(&scenarios, (&of_file, &not_by_test), &factors, &stop, looks)
+        });
+        let draws = super::draw::draws(&campaign, seed).map_err(&contradiction)?;
         let path = path.to_owned();
         let accounts = file.map(|file| file.accounts).unwrap_or_default();
-        Ok(Self { campaign, path, grid, count, draws, of_file, not_by_test, accounts, scenarios })
+        Ok(Self {
+            campaign,
+            seed,
+            path,
+            grid,
+            count,
+            draws,
+            of_file,
+            not_by_test,
+            accounts,
+            scenarios,
+        })
     }
 
     /// Makes the cases one after another. Additional replicates come at the end.
@@ -113,7 +133,7 @@ impl PlanMaker {
             };
             values.extend(give(&mut set, &mut faults, factor, at));
         }
-        let seed = self.campaign.seed.wrapping_add(u64::from(replicate));
+        let seed = self.seed.wrapping_add(u64::from(replicate));
         let set: SharedTexts = set.into_iter().collect();
         let id = id_of(planned, &set, faults.as_ref(), seed);
         Ok(Case {
@@ -141,11 +161,14 @@ impl PlanMaker {
             campaign: absolute(&self.path)?,
             limits: campaign.limits.into(),
             stop: campaign.stop.clone().map(StopRule::from),
-            factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
+            looks: Looks::from(campaign.looks),
+            seed_from_plan: campaign.seed.is_none(),
+            factors: factor_names(campaign),
             requirements: self.of_file.clone(),
             not_by_test: self.not_by_test.clone(),
             accounts: self.accounts.clone(),
             bundled: None,
+            copies: None,
             scenarios: self.scenarios.clone(),
             cases: Vec::new(),
         })
@@ -170,6 +193,10 @@ impl PlanMaker {
         }
         Ok(())
     }
+}
+
+fn factor_names(campaign: &Campaign) -> Vec<String> {
+    campaign.factors.iter().map(|factor| factor.name.clone()).collect()
 }
 
 /// Cases that come one after another while they are written.

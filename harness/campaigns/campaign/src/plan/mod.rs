@@ -7,6 +7,7 @@ pub mod case_id;
 mod draw;
 mod error;
 pub mod factor_values;
+pub mod looks;
 pub(crate) mod make;
 pub mod planned;
 mod possible;
@@ -21,7 +22,9 @@ pub(crate) use error::system;
 pub use error::{PlanError, short};
 pub use planned::{Case, INPUTS, PlannedFile, PlannedScenario};
 
+use crate::journal::{Journal, JournalEvent};
 use case_id::CaseId;
+use looks::Looks;
 use octant_account::Account;
 use octant_scenario::campaign::{LimitsSpec, StopSpec};
 use octant_statistics::proportion::Demand;
@@ -62,6 +65,12 @@ pub struct Plan {
     pub limits: CaseLimits,
     /// Early stopping.
     pub stop: Option<StopRule>,
+    /// How often its results are looked at.
+    #[serde(default, skip_serializing_if = "Looks::is_once")]
+    pub looks: Looks,
+    /// True if its seed comes from what it says, and wasn't given.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub seed_from_plan: bool,
     /// Names of the factors, in the order of the campaign.
     pub factors: Vec<String>,
     /// Requirements of the campaign's own file that are verified by runs.
@@ -76,6 +85,9 @@ pub struct Plan {
     /// Files of the campaign, if they came from a bundle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bundled: Option<BundledCampaign>,
+    /// Folder with copies of the files, where the files themselves aren't there any more.
+    #[serde(skip)]
+    pub copies: Option<PathBuf>,
     /// The scenarios.
     pub scenarios: Vec<PlannedScenario>,
     /// Cases, in the order in which they are begun.
@@ -101,6 +113,10 @@ struct HashedPlan<'a, C: ?Sized> {
     campaign: &'static str,
     limits: CaseLimits,
     stop: &'a Option<StopRule>,
+    #[serde(skip_serializing_if = "Looks::is_once")]
+    looks: Looks,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    seed_from_plan: bool,
     factors: &'a [String],
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     requirements: &'a [Planned],
@@ -136,6 +152,14 @@ pub struct StopRule {
     pub demand: Demand,
     /// Number of cases between evaluations, in the order of the plan.
     pub every: u64,
+}
+
+impl StopRule {
+    /// Number of looks at a number of cases.
+    #[must_use]
+    pub fn looks(&self, cases: usize) -> u64 {
+        (cases as u64).div_ceil(self.every.max(1)).max(1)
+    }
 }
 
 impl From<StopSpec> for StopRule {
@@ -180,6 +204,13 @@ impl Plan {
                 )));
             }
         }
+        if plan.seed_from_plan && plan.seed().is_some_and(|seed| seed != plan.own_seed()) {
+            return Err(form(format!(
+                "found {}, expected {} from what it says",
+                plan.seed_in_words(),
+                plan.own_seed()
+            )));
+        }
         if let Some(folder) = system("find", path, std::path::absolute(path))?.parent() {
             plan.place(folder);
         }
@@ -208,6 +239,7 @@ impl Plan {
     pub fn write(&self, folder: &Path, extend: bool) -> Result<PlanWritten, PlanError> {
         let path = folder.join(FILE_NAME);
         let mut written = PlanWritten::New;
+        let mut event = JournalEvent::Planned(self.in_journal());
         if path.exists() {
             let there = Self::read(&path)?;
             if there.id == self.id {
@@ -223,6 +255,25 @@ impl Plan {
                     there.cases.len()
                 )));
             }
+            let looked = Journal::read(folder)?.cases_at_first_look().is_some();
+            let is_prefix = self.ids().zip(there.ids()).all(|(new, old)| new == old);
+            let is_same_claim = self.looks == there.looks
+                && self.stop == there.stop
+                && self.requirements == there.requirements;
+            if extend && looked && !is_same_claim {
+                return Err(form(
+                    "it was looked at, and this plan has other looks or requirements: expected the same ones, or an \
+                     empty folder"
+                        .to_owned(),
+                ));
+            }
+            if extend && looked && !is_prefix {
+                return Err(form(
+                    "it was looked at, and this plan has more cases of the draws that were seen: expected more \
+                     replicates alone, or an empty folder"
+                        .to_owned(),
+                ));
+            }
             if !extend {
                 return Err(form(format!(
                     "a plan with {} of these {} cases is there: --extend takes it over, with its \
@@ -232,6 +283,8 @@ impl Plan {
                 )));
             }
             written = PlanWritten::Extended(self.cases.len() - there.cases.len());
+            let (before, cases_before) = (there.id, there.cases.len());
+            event = JournalEvent::Extended { before, cases_before, to: self.in_journal() };
         }
         system("create", folder, std::fs::create_dir_all(folder))?;
         octant_base::whole_file::clean(folder);
@@ -239,6 +292,8 @@ impl Plan {
         let mut file = BufWriter::new(new.as_file());
         system("write", &path, self.write_json(&mut file).and_then(|()| file.flush()))?;
         drop(file);
+        // Said before it is done: a plan that nobody wrote down would be one without looks.
+        Journal::append(folder, event)?;
         system("write", &path, new.persist(&path).map_err(|error| error.error))?;
         Ok(written)
     }
@@ -303,7 +358,8 @@ impl Plan {
     /// Returns what makes the id, with a list of cases in place of its own.
     fn hashed<'a, C: ?Sized>(&'a self, cases: &'a C) -> HashedPlan<'a, C> {
         let Self { schema, id: _, title, campaign: _, limits, stop, factors, .. } = self;
-        let Self { requirements, not_by_test, accounts, scenarios, .. } = self;
+        let Self { requirements, not_by_test, accounts, scenarios, looks, seed_from_plan, .. } =
+            self;
         let placeless = |scenario: &PlannedScenario| PlannedScenario {
             file: PathBuf::new(),
             files: BTreeMap::new(),
@@ -316,12 +372,24 @@ impl Plan {
             campaign: "",
             limits: *limits,
             stop,
+            looks: *looks,
+            seed_from_plan: *seed_from_plan,
             factors,
             requirements,
             not_by_test,
             accounts,
             scenarios: scenarios.iter().map(placeless).collect(),
             cases,
+        }
+    }
+
+    /// Uses the copies in the folder of the campaign in place of files that are gone or were changed.
+    pub fn use_copies(&mut self, folder: &Path) {
+        self.copies = Some(folder.join(INPUTS));
+        for scenario in &mut self.scenarios {
+            if scenario.check_file().is_err() {
+                *scenario = scenario.copied(folder);
+            }
         }
     }
 
@@ -447,11 +515,14 @@ mod tests {
             campaign: "/campaign.toml".into(),
             limits: CaseLimits { time_s: 1.0, memory_mib: 1 },
             stop: None,
+            looks: Looks::Planned(2),
+            seed_from_plan: false,
             factors: vec!["f".to_owned()],
             requirements: Vec::new(),
             not_by_test: Vec::new(),
             accounts: Vec::new(),
             bundled: None,
+            copies: None,
             scenarios: Vec::new(),
             cases: (0..3).map(case).collect(),
         };

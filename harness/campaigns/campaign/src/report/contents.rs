@@ -12,8 +12,10 @@ use super::units::CampaignUnits;
 use super::{about, discrepancy, figures, makers, requirement, rows, selftest, tables};
 use crate::against::{Against, Selection, against_by};
 use crate::execute::{Shard, refuse_foreign};
-use crate::judge::status::{self, CampaignStatus, StatusError};
-use crate::judge::trace::first_by;
+use crate::journal::{Journal, JournalEntry};
+use crate::judge::looks::LookState;
+use crate::judge::status::{self, CampaignStatus, JointStatement, StatusError};
+use crate::judge::trace::{first_by, take_verdicts};
 use crate::plan::Plan;
 use crate::store::CampaignResults;
 use octant_account::Account;
@@ -76,6 +78,12 @@ pub struct Statistics {
     pub scenarios: Vec<ScenarioFigures>,
     /// Combinations with the factors of the grid.
     pub combinations: Vec<CombinationFigures>,
+    /// Statement on all requirements together; null where none asks for a probability.
+    pub joint: Option<JointStatement>,
+    /// Seed, and where it comes from.
+    pub seed: String,
+    /// Looks at the results.
+    pub looks: LookState,
     /// Cases that stand out from their combination.
     pub outliers: Vec<OutlierFigures>,
     /// Discrepancies with their dispositions.
@@ -129,8 +137,29 @@ pub struct CampaignReport<'a> {
     pub units: CampaignUnits,
     /// Times at which the first and the last result were stored.
     pub run_between: [Option<SystemTime>; 2],
+    /// What was done with the campaign: plans, looks, repetitions, restrictions.
+    pub journal: Vec<JournalEntry>,
+    /// Key that will sign the manifest.
+    pub signature: Option<String>,
     /// Independent draw of each case.
     draws: Vec<u32>,
+}
+
+/// Describes what the journal has that a claim has to be read with, and where it contradicts the folder.
+fn journal_findings(
+    plan: &Plan,
+    journal: &Journal,
+    taken_back: u64,
+    first_result: Option<SystemTime>,
+) -> Vec<String> {
+    let mut found = match journal.is_there {
+        true => journal.contradictions(&plan.id, taken_back, first_result),
+        false => Vec::new(),
+    };
+    if plan.has_claims() {
+        found.extend(journal.doubts());
+    }
+    found
 }
 
 /// Checks that the rows and their drifts could be read.
@@ -174,13 +203,15 @@ impl<'a> CampaignReport<'a> {
         let draws = rows::draws(&rows);
         let (combinations, grid) = figures::combinations(plan, end);
         let (about, notes) = about::requirements(plan);
-        let trace = first_by(plan, &about, &results, &draws, ROWS_MAX)?;
+        let mut trace = first_by(plan, &about, &results, &draws, ROWS_MAX)?;
+        take_verdicts(&mut trace, &status);
         let run = (0..rows.len()).filter(|place| rows.has_run(*place)).count();
         let (tables, mut wrong) = tables::look(plan, folder, &results, run)?;
         let run_between = run_between(&rows, &results);
         let prediction = predicted(plan, &results);
         let inputs = vec![results.account(plan, end)?];
         let made_by = results.made_by(plan, end);
+        let (journal, taken_back) = (results.journal.clone(), results.taken_back());
         // The figures need the rows alone, and most of the memory.
         drop(results);
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {
@@ -191,6 +222,7 @@ impl<'a> CampaignReport<'a> {
             wrong.push(format!("the self-test of the program came to {}", test.verdict.name()));
         }
         wrong.extend(makers::wrong(&made_by, selftest.as_ref()));
+        wrong.extend(journal_findings(plan, &journal, taken_back, run_between[0]));
         let mut of_combinations: Vec<CombinationFigures> = combinations
             .iter()
             .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
@@ -213,6 +245,9 @@ impl<'a> CampaignReport<'a> {
                 .map(|scenario| ScenarioFigures::of(&scenario.id, &grid, &combinations, &rows))
                 .collect(),
             combinations: of_combinations,
+            joint: status.joint.clone(),
+            seed: plan.seed_in_words(),
+            looks: status.looks.clone(),
             outliers: figures::standing_out(&combinations, &rows),
             discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
             inputs,
@@ -238,6 +273,8 @@ impl<'a> CampaignReport<'a> {
             tables,
             units: CampaignUnits::of(plan, folder),
             run_between,
+            journal: journal.entries,
+            signature: None,
             draws,
         })
     }

@@ -5,7 +5,7 @@ use super::combination::Combination;
 use super::contents::CampaignReport;
 use super::discrepancy::checks_of;
 use super::rows::ReportRow;
-use octant_score::junit::{JunitCase, JunitCases, JunitSuite, write_document};
+use octant_score::junit::{JunitCase, JunitCases, JunitSuite, JunitTimes, write_document};
 use octant_verdict::Verdict;
 use std::io;
 
@@ -34,12 +34,15 @@ impl JunitCases for SuiteCases<'_> {
 /// If the XML can't be written.
 pub fn junit(report: &CampaignReport<'_>, to: impl io::Write) -> io::Result<()> {
     let class = &report.plan.title;
+    let [first, last] = report.run_between;
+    let times = first.zip(last).map(|(started, ended)| JunitTimes { started, ended });
     let mut cases = Vec::new();
     for requirement in &report.statistics.requirements {
         cases.push(JunitCase {
             name: format!("{}: all cases together", requirement.id),
             class: class.clone(),
             properties: vec![("verifies", requirement.id.clone())],
+            times: None,
             verdict: requirement.verdict,
             message: requirement.reason.clone(),
         });
@@ -48,6 +51,7 @@ pub fn junit(report: &CampaignReport<'_>, to: impl io::Write) -> io::Result<()> 
         name: "campaign".to_owned(),
         class: class.clone(),
         properties: Vec::new(),
+        times,
         verdict: report.statistics.verdict,
         message: report.reasons().join("; "),
     });
@@ -57,11 +61,11 @@ pub fn junit(report: &CampaignReport<'_>, to: impl io::Write) -> io::Result<()> 
         ("octant", env!("CARGO_PKG_VERSION").to_owned()),
     ];
     let cases = SuiteCases::Listed(cases);
-    let mut suites = vec![JunitSuite { name: class.clone(), properties, cases }];
+    let mut suites = vec![JunitSuite { name: class.clone(), properties, times, cases }];
     for combination in &report.combinations {
         let name = combination.name();
         let cases = SuiteCases::Of { report, combination, name: name.clone() };
-        suites.push(JunitSuite { name, properties: Vec::new(), cases });
+        suites.push(JunitSuite { name, properties: Vec::new(), times: None, cases });
     }
     write_document("octant campaign", &suites, to)
 }
@@ -86,6 +90,7 @@ fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>, class: &str) -> Vec
             name: format!("{case}: {}", requirement.id),
             class: class.to_owned(),
             properties: vec![("verifies", requirement.id.clone()), ("case", id.clone())],
+            times: None,
             verdict: verdict.unwrap_or(Verdict::Inconclusive),
             message: found,
         });
@@ -104,6 +109,7 @@ fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>, class: &str) -> Vec
         name: format!("{case}: case"),
         class: class.to_owned(),
         properties: vec![("case", id), ("seed", row.case.seed.to_string())],
+        times: None,
         verdict,
         message,
     });

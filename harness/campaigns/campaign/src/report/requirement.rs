@@ -48,7 +48,8 @@ pub struct RequirementFigures {
     pub asked: Option<EnsembleRequirement>,
     /// Confidence of the lower bound, one-sided: the required one, or 95 %.
     pub confidence: f64,
-    /// Lower bound of the probability that a draw passes (Clopper and Pearson); null where none is known.
+    /// Lower bound of the probability that a draw passes (of Clopper and Pearson, or the open one; with several looks at
+    /// each of them, so that all keep the confidence); null where none is known.
     pub lower_bound: Option<f64>,
     /// Further draws that suffice if all of them pass; null if nothing is required of them
     /// together.
@@ -146,14 +147,16 @@ pub(super) fn of(
     status
         .requirements
         .iter()
-        .map(|(id, status)| one(plan, id, status, about, combinations, rows, draws))
+        .map(|(id, found)| {
+            one(plan, id, (found, status.looks.is_open()), about, combinations, rows, draws)
+        })
         .collect()
 }
 
 fn one(
     plan: &Plan,
     id: &str,
-    status: &RequirementStatus,
+    (status, is_open): (&RequirementStatus, bool),
     about: &Requirements,
     combinations: &[Combination],
     rows: &ReportRows<'_>,
@@ -183,7 +186,9 @@ fn one(
         (None, None) => (None, None, None),
     };
     let all = Counted::of(plan, id, draws.iter().map(|draw| *draw as usize).zip(rows.iter()));
-    let counted = all.draws();
+    // Draws that were added after the first look are no part of a claim.
+    let counted = if status.ensemble.is_some() { status.draws } else { all.draws() };
+    let lower = status.bound.or_else(|| bound(counted, CONFIDENCE));
     let confidence = status.ensemble.map_or(CONFIDENCE, |asked| asked.confidence);
     let nearest = results()
         .filter_map(|(case, result)| {
@@ -205,14 +210,16 @@ fn one(
         reason: status.reason.clone(),
         counts: all.counts,
         draws: counted,
-        claim: bound(counted, confidence).map(|lower| claim(counted, lower, confidence)),
+        claim: lower.map(|lower| claim(counted, lower, confidence)),
         asked: status.ensemble,
         confidence,
-        lower_bound: bound(counted, confidence),
+        lower_bound: lower,
         needed_if_all_pass: status.needed,
-        needed_at_rate: status.ensemble.map(|EnsembleRequirement { pass, confidence }| {
-            further_at_rate(Demand { pass, confidence }, counted.not_passed, counted.known())
-        }),
+        needed_at_rate: status.ensemble.filter(|_| !is_open).map(
+            |EnsembleRequirement { pass, confidence }| {
+                further_at_rate(Demand { pass, confidence }, counted.not_passed, counted.known())
+            },
+        ),
         nearest,
         convergence: convergence(&all.passed(), |passed| pass(passed, CONFIDENCE)),
         combinations: (combinations.iter())

@@ -8,6 +8,7 @@ use super::scan::{hex, read_checksum, read_head, read_whole};
 use super::stored::{NotCounted, Stored, StoredFile, StoredId, StoredRecord, read_file};
 use super::writer::{EXTENSION, FOLDER};
 use crate::execute::case::{CaseResult, ResultError};
+use crate::journal::Journal;
 use crate::plan::{Case, Plan};
 use octant_base::not_finite;
 use octant_base::pool::{each_in_order, processors};
@@ -38,6 +39,8 @@ pub struct CampaignResults {
     pub(super) not_counted: NotCounted,
     /// Makers of the records, as they are stored.
     pub(super) makers: Vec<Vec<u8>>,
+    /// Journal of the campaign.
+    pub journal: Journal,
 }
 
 /// Bytes of a result.
@@ -64,6 +67,7 @@ impl CampaignResults {
         };
         let mut stored: Vec<(StoredId, Stored)> = all_files(folder).into_iter().map(file).collect();
         let has_files = !stored.is_empty();
+        let journal = Journal::read(folder)?;
         let paths = parts(&folder.join(FOLDER))?;
         let mut parts = Vec::with_capacity(paths.len());
         let stays_open = paths.len() <= OPEN_MAX;
@@ -112,7 +116,7 @@ impl CampaignResults {
             stored.sort_unstable_by(order);
         }
         let mut found =
-            Self { parts, stored, consistent: Vec::new(), cases: 0, not_counted, makers };
+            Self { parts, stored, consistent: Vec::new(), cases: 0, not_counted, makers, journal };
         found.forget(&forgotten)?;
         found.consistent.resize_with(found.stored.len(), AtomicU64::default);
         Ok(found)
@@ -319,7 +323,7 @@ impl CampaignResults {
 
     /// Returns the checksums of all results of a case that ended as errors, by which they can be
     /// forgotten. A result that can't be read is none of them.
-    pub(super) fn errors(&self, case: &str) -> Result<Vec<Checksum>, ResultError> {
+    pub(crate) fn errors(&self, case: &str) -> Result<Vec<Checksum>, ResultError> {
         let all = self.of(case).iter().map(|(_, stored)| stored);
         all.filter(|stored| self.is_error(stored, case)).map(|stored| self.own(stored)).collect()
     }
@@ -345,6 +349,12 @@ impl CampaignResults {
             Stored::File(file) => Ok(*blake3::hash(&read_file(&file.path)?).as_bytes()),
             Stored::Record(record) => Ok(self.at(record, read_head)?.blake3),
         }
+    }
+
+    /// Number of results that were taken back.
+    #[must_use]
+    pub fn taken_back(&self) -> u64 {
+        self.not_counted.taken_back
     }
 
     /// Returns the checksum by which a result can be forgotten.

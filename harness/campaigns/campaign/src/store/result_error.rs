@@ -1,5 +1,6 @@
 //! Reasons why the result of a case can't be read.
 
+use crate::journal::JournalError;
 use crate::store::error::{PartError, ResultPlace};
 use std::io;
 use std::path::PathBuf;
@@ -10,6 +11,9 @@ pub enum ResultError {
     /// A part file can't be read.
     #[error(transparent)]
     Part(#[from] PartError),
+    /// The journal of the campaign can't be read.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// A file can't be read.
     #[error("read {path}: {source}")]
     System {

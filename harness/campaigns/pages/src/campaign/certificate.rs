@@ -34,7 +34,7 @@ fn of(report: &CampaignReport<'_>) -> Option<Certificate> {
     rows.extend(open);
     Some(Certificate {
         title: report.plan.title.clone(),
-        lines: lines(report),
+        lines: lines(report).into_iter().chain([super::origin::line(report)]).collect(),
         verdict: report.statistics.verdict,
         rows,
     })

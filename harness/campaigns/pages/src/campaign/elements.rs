@@ -18,6 +18,7 @@ pub(super) const SECTIONS: [(&str, &str); 11] = [
     ("findings", "Cases to look at"),
     ("discrepancies", "Discrepancies"),
     ("trace", "Trace"),
+    ("journal", "Looks and journal"),
     ("provenance", "Provenance"),
 ];
 

@@ -1,9 +1,8 @@
 //! `report.html` of a campaign: for the reader who assesses it, and the one who writes the
 //! dispositions.
 //!
-//! The page is one file without network access, and no content depends on a script. It contains
-//! nothing of host or clock: the same results give the same bytes; origin and time are in the
-//! manifest.
+//! The page is one file without network access, and no content depends on a script. Hosts, persons and times on it are
+//! those of the stored results and of the journal: the same folder, program and key give the same bytes.
 
 mod certificate;
 mod convergence;
@@ -11,7 +10,9 @@ mod drift;
 mod effects;
 mod elements;
 mod findings;
+mod journal;
 mod matrix;
+mod origin;
 mod prediction;
 mod requirements;
 mod sensitivity;
@@ -46,6 +47,7 @@ pub fn render(report: &CampaignReport<'_>, beside: bool) -> String {
         (findings::section(report, beside))
         (findings::discrepancies(report, beside))
         (matrix::section(report, beside))
+        (journal::section(report))
         (provenance(report))
     };
     page(&format!("{}: {}", report.plan.title, verdict.name()), &body)
@@ -162,15 +164,13 @@ fn provenance(report: &CampaignReport<'_>) -> Markup {
     };
     html! {
         (heading("provenance"))
+        (origin::table(report))
         table {
             tbody {
-                tr { td { "octant" } td.mono { (env!("CARGO_PKG_VERSION")) } }
-                tr { td { "plan" } td.mono { (report.plan.id) } }
                 tr { td { "campaign" } td.mono { (campaign) } }
                 @for scenario in &report.plan.scenarios {
                     tr { td { "scenario " (scenario.id) ", BLAKE3" } td.mono { (scenario.blake3) } }
                 }
-                tr { td { "results, BLAKE3" } td.mono { (report.statistics.results_blake3) } }
                 @for (table, hash) in &report.tables {
                     tr { td { (table) ", BLAKE3" } td.mono { (hash) } }
                 }
@@ -187,9 +187,8 @@ fn provenance(report: &CampaignReport<'_>) -> Markup {
             p.hint { "The tables have not been merged: octant campaign merge makes cases.parquet, \
                 checks.parquet and drift.parquet." }
         }
-        p.hint { "Who made this when, on which computer and with which program stands in manifest.json, with the \
-            hash of every file of the folder: octant verify holds them against it. The numbers of this page are \
-            in statistics.json" @if !report.units.are_default() { " (in arcmin, nmi and m/s)" } ", every check in \
+        p.hint { "The hash of every file of the folder, and who made this page when, stand in manifest.json: octant \
+            verify holds them against it. The numbers of this page are in statistics.json" @if !report.units.are_default() { " (in arcmin, nmi and m/s)" } ", every check in \
             junit.xml." }
         p.hint { "The same campaign again; the results have to come to the same hash:" }
         code.rerun { (again(report)) }

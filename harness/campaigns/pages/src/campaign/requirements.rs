@@ -3,6 +3,7 @@
 use super::elements::heading;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_campaign::plan::looks::LookWay;
 use octant_campaign::report::requirement::{self, CombinationChecks, RequirementFigures};
 use octant_campaign::report::{CampaignReport, POLICY};
 use octant_report::page::badge;
@@ -26,9 +27,10 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
                     have several sites: there a minute has several lengths." }
             }
             p.hint { "The bound is that of Clopper and Pearson on the probability that an independent draw passes in \
-                all of its checks, one-sided. Where nothing is asked of the draws together, every check has to pass. "
-                (POLICY) }
+                all of its checks, one-sided" (bound_of(report)) ". Where nothing is asked of the draws together, every \
+                check has to pass. " (POLICY) }
         }
+        @if let Some(joint) = &report.statistics.joint { p { "All requirements together: " (joint.in_words()) "." } }
         @if !report.status.not_by_test.is_empty() {
             p { "Not verified by runs: " (report.status.not_by_test.join(", ")) "." }
         }
@@ -68,7 +70,7 @@ fn table(report: &CampaignReport<'_>, all: &[RequirementFigures]) -> Markup {
             table {
                 thead { tr {
                     th { "Requirement" } th { "Has to hold" } th.n { "Checks" } th.n { "Draws" } th.n { "Bound" }
-                    th.n { "Asked" } th.n { "Still needed" } th.n { "Least margin" } th.n { "Verdict" }
+                    th.n { "Asked" } th.n { "More draws" } th.n { "Least margin" } th.n { "Verdict" }
                 } }
                 tbody { @for r in worst_first {
                     @let unit = unit_of(report, r).unwrap_or_else(|| own(r));
@@ -90,7 +92,7 @@ fn table(report: &CampaignReport<'_>, all: &[RequirementFigures]) -> Markup {
                     td.n { (draws(r.draws)) }
                     td.n { (share(r.lower_bound)) div.reason { "at " (percent(r.confidence)) } }
                     td.n { (r.asked.map_or_else(|| "every check".to_owned(), |asked| percent(asked.pass))) }
-                    td.n { (needed(r)) }
+                    td.n { (needed(r, report.statistics.looks.is_open())) }
                     td.n {
                         @match &r.nearest {
                             Some(nearest) => {
@@ -143,7 +145,20 @@ fn share(bound: Option<f64>) -> String {
     bound.map_or_else(|| "–".to_owned(), |p| format!("{} %", number::fixed(down(p), 2)))
 }
 
-fn needed(r: &RequirementFigures) -> Markup {
+/// Says how the bound holds for the looks of the campaign.
+fn bound_of(report: &CampaignReport<'_>) -> &'static str {
+    match report.plan.look_way(report.statistics.looks.claim_cases) {
+        LookWay::Once => "",
+        LookWay::Planned(_) | LookWay::Stop(_) => {
+            ", with a part of the error for each look; the verdict is that of the exact boundary where looks are planned"
+        }
+        LookWay::Open => {
+            ", or, where a probability is asked, the open one, which holds whenever it is looked at"
+        }
+    }
+}
+
+fn needed(r: &RequirementFigures, is_open: bool) -> Markup {
     let text = |needed: Needed| match needed {
         Needed::Runs(runs) => runs.to_string(),
         Needed::CannotBeMet => "cannot be met".to_owned(),
@@ -153,7 +168,9 @@ fn needed(r: &RequirementFigures) -> Markup {
             (None, _) => "–",
             (Some(all), rate) => {
                 (text(all))
-                @if all != Needed::Runs(0) { div.reason { "if all pass" } }
+                @if all != Needed::Runs(0) {
+                    div.reason { "if all pass" @if !is_open { ", in a new plan" } }
+                }
                 @if let Some(rate) = rate.filter(|rate| *rate != all) {
                     div.reason { (text(rate)) " at this rate" }
                 }

@@ -16,8 +16,11 @@ use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::execute::{ExecuteError, Shard};
+use octant_campaign::journal::{Journal, JournalError, JournalEvent};
+use octant_campaign::judge::looks::note_look;
 use octant_campaign::judge::status;
-use octant_campaign::judge::trace::{requirements_of, with_those_of_scenarios};
+use octant_campaign::judge::trace::{requirements_of, take_verdicts, with_those_of_scenarios};
+use octant_campaign::plan::looks::LookWay;
 use octant_campaign::plan::progress::PlanStage;
 use octant_campaign::plan::{Case, FILE_NAME, Plan, PlanError, PlanWritten};
 use octant_campaign::store::CampaignResults;
@@ -140,7 +143,12 @@ pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Ver
         Command::Status { folder, json } => {
             let place = CampaignPlace::of(folder, Needs::Results)?;
             let folder = place.folder();
-            let status = status::of_folder(folder, || read(folder))?.map_err(Failure::bench)?;
+            let (plan, found) = status::of_folder(folder, || read(folder))?;
+            let status = found.map_err(Failure::bench)?;
+            if plan.has_claims() && status.looks.is_due {
+                note_look(&plan, folder, &status, "octant campaign status")?;
+            }
+            let status = status.shown();
             if *json {
                 print_json(&status)?
             } else {
@@ -167,10 +175,17 @@ impl From<PlanError> for Failure {
         match error {
             // The place comes first.
             PlanError::File(_) | PlanError::Requirements(_) => failure,
+            PlanError::Journal(error) => error.into(),
             PlanError::System { .. } | PlanError::Contradiction { .. } | PlanError::Form { .. } => {
                 failure.failed()
             }
         }
+    }
+}
+
+impl From<JournalError> for Failure {
+    fn from(error: JournalError) -> Self {
+        Self::of(&error).failed()
     }
 }
 
@@ -180,6 +195,7 @@ impl From<ExecuteError> for Failure {
         match error {
             ExecuteError::Plan(error) => error.into(),
             ExecuteError::NotKept(_) | ExecuteError::Result(_) => failure,
+            ExecuteError::Journal(error) => error.into(),
             ExecuteError::Foreign { .. }
             | ExecuteError::Running { .. }
             | ExecuteError::Ended { .. }
@@ -215,11 +231,30 @@ fn plan(campaign: &Path, out: Option<&Path>, extend: bool) -> Result<Verdict, Fa
         PlanWritten::Extended(new) => format!(", {new} of them new"),
     };
     print(&format!(
-        "{}{what}\n{}\n",
+        "{}{what}\n{}{}\n",
         counted(plan.cases.len(), "case", "cases"),
+        said_of_looks(&plan, &folder)?,
         folder.join(FILE_NAME).display()
     ))?;
     Ok(Verdict::Pass)
+}
+
+/// Describes the seed of a plan, and the looks at its results with their price.
+fn said_of_looks(plan: &Plan, folder: &Path) -> Result<String, Failure> {
+    let mut text = plan.seed_in_words() + "\n";
+    if !plan.has_claims() {
+        return Ok(text);
+    }
+    text += &plan.looks_in_words();
+    let first = Journal::read(folder)?.cases_at_first_look();
+    let is_fixed = plan.look_way(plan.cases.len()) != LookWay::Open;
+    if let Some(first) = first.filter(|first| *first < plan.cases.len() && is_fixed) {
+        text += &format!(
+            "the first look was at {first} cases: the {} further ones are nominal, no part of a claim\n",
+            plan.cases.len() - first
+        );
+    }
+    Ok(text)
 }
 
 fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict, Failure> {
@@ -230,8 +265,13 @@ fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict,
     // The campaign's verdict is computed in one place: a case may fail in parts that no requirement
     // checks.
     let status = status::of(&plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
-    let trace = octant_campaign::judge::trace::trace(&plan, &requirements, folder, status.cases)
-        .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
+    if plan.has_claims() {
+        note_look(&plan, folder, &status, "octant campaign trace")?;
+    }
+    let mut trace =
+        octant_campaign::judge::trace::trace(&plan, &requirements, folder, status.cases)
+            .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
+    take_verdicts(&mut trace, &status);
     if let Some(out) = strictdoc {
         if out.exists() {
             let message = format!("failed to write {}: the folder exists already", out.display());
@@ -341,6 +381,7 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
     let planned = plan.planned(case)?;
     // Checks that the scenario is the planned one.
     planned.scenario(case)?;
+    note_opened(&plan, place.folder(), id, "octant campaign case")?;
     let out = out.map_or_else(|| Path::new("runs").join(format!("case-{id}")), Path::to_owned);
     let words = ["octant", "campaign", "case", &place.shown(place.folder()), id];
     let line = words.map(str::to_owned).to_vec();
@@ -363,8 +404,22 @@ fn result(folder: &Path, id: &str) -> Result<Verdict, Failure> {
             folder.display()
         )));
     };
+    note_opened(&plan, place.folder(), id, "octant campaign result")?;
     print(&String::from_utf8_lossy(&stored.bytes))?;
     Ok(Verdict::Pass)
+}
+
+/// Notes in the journal that the outcome of a case is shown before the look.
+fn note_opened(plan: &Plan, folder: &Path, case: &str, by: &str) -> Result<(), Failure> {
+    if !plan.has_claims() {
+        return Ok(());
+    }
+    let status = status::of(plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
+    if !status.looks.is_due {
+        let (case, by) = (case.to_owned(), by.to_owned());
+        Journal::append(folder, JournalEvent::Opened { case, by })?;
+    }
+    Ok(())
 }
 
 /// Runs the cases that standard input names.

@@ -14,11 +14,13 @@ use octant_campaign::execute::selection::CaseSelection;
 use octant_campaign::execute::{
     CaseDone, ExecuteError, ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute,
 };
+use octant_campaign::judge::looks::note_look;
 use octant_campaign::judge::status;
 use octant_campaign::judge::stop::StopDecision;
 use octant_campaign::merge;
 use octant_campaign::merge::results;
 use octant_campaign::plan::Plan;
+use octant_campaign::plan::looks::LookWay;
 use octant_campaign::store::CampaignResults;
 use octant_evidence::manifest::shell_path;
 use octant_verdict::Verdict;
@@ -160,9 +162,12 @@ pub(crate) fn show(bar: &CaseBar, plan: &Plan, event: &ExecutionEvent) {
         ExecutionEvent::There(count) => bar.there(*count),
         ExecutionEvent::Begun(index) => bar.begun(*index),
         ExecutionEvent::Done(done) => {
-            bar.ended(Some(done.index), done.verdict > Verdict::Inconclusive);
+            // Before a look no outcome is shown; an error is one of the bench.
+            let hides = plan.has_claims() && plan.look_way(plan.cases.len()) != LookWay::Open;
+            let least = if hides { Verdict::Fail } else { Verdict::Inconclusive };
+            bar.ended(Some(done.index), done.verdict > least);
             let id = plan.cases.get(done.index).map_or("", |case| case.id.as_str());
-            if let Some(line) = failure(id, done) {
+            if let Some(line) = failure(id, done, least) {
                 bar.note(&line);
             }
         }
@@ -214,13 +219,13 @@ pub(crate) fn in_rounds(
     Ok(all)
 }
 
-/// Describes a case as it ends; `None` if it passes.
-fn failure(id: &str, done: &CaseDone) -> Option<String> {
+/// Describes a case as it ends; `None` if its verdict isn't worse than `least`.
+fn failure(id: &str, done: &CaseDone, least: Verdict) -> Option<String> {
     let differs = done.differs.as_ref().map(|place| {
         format!("case {id}: found another result than the stored one, kept beside it in {place}")
     });
     let reason = done.reason.as_deref().unwrap_or("");
-    let bad = done.verdict > Verdict::Inconclusive;
+    let bad = done.verdict > least;
     differs.or_else(|| bad.then(|| format!("case {id}: {}: {reason}", done.verdict.name())))
 }
 
@@ -260,6 +265,10 @@ fn conclude(
     results::tables(plan, folder, cases, |table| merge::part(folder, shard, table))
         .map_err(|error| Failure::bench(error).failed())?;
     let status = status::of(plan, folder, shard).map_err(Failure::bench)?;
+    if plan.has_claims() && status.looks.is_due && shard == Shard::WHOLE {
+        note_look(plan, folder, &status, "octant campaign run")?;
+    }
+    let status = status.shown();
     crate::terminal::print(&(status.text() + &next(named, is_selected, &status)))?;
     Ok(Some(status))
 }

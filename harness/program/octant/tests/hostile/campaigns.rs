@@ -1,227 +1,433 @@
-//! Attacks on campaigns whose cases have twins: plans that can't show what they require, and stored results that were changed.
+//! Attacks on the claim of a campaign and on its evidence, by a person who has the folder: none ends in a pass that stays.
+//!
+//! Results are synthetic, and each attack is tried by the commands of the program.
 
-use super::{Ends, Row, breaks, open};
-use crate::common::program::octant_in;
-use crate::common::results;
-use octant_campaign::execute::alike::run_alike;
-use octant_campaign::execute::case::hash_of_summary;
-use octant_campaign::plan::{Case, Plan};
-use serde_json::Value;
-use std::path::Path;
-use std::sync::LazyLock;
+use super::campaign_content as content;
+use super::{Ends, Row};
+use crate::campaign_looks::Looked;
+use octant_campaign::journal::FILE_NAME as JOURNAL;
+use octant_evidence::Manifest;
+use octant_verdict::Verdict;
+use sha2::Digest;
+use std::path::{Path, PathBuf};
 
-/// A calibration of 100 s with two spikes, of which each case has one.
-const SCENARIO: &str = "schema = 1
-title = \"twins\"
-seed = 1
-[imu]
-rate = \"50 Hz\"
-[procedure.calibration]
-duration = \"100 s\"
-stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]
-[[faults]]
-id = \"spike-1\"
-kind = \"spike\"
-trigger = { at = \"60 s\" }
-duration = \"2 samples\"
-channels = \"gyro x\"
-amplitude = \"30 deg/h\"
-[[faults]]
-id = \"spike-2\"
-kind = \"spike\"
-trigger = { at = \"70 s\" }
-duration = \"2 samples\"
-channels = \"gyro y\"
-amplitude = \"30 deg/h\"
-[[requirements]]
-id = \"SHIFT\"
-text = \"No parameter moves.\"
-measure = \"counterfactual.worst_shift_sigma\"
-limit = 3
-[[requirements]]
-id = \"SEEN\"
-text = \"The fault is noticed.\"
-measure = \"counterfactual.undetected\"
-limit = 0
-[[requirements]]
-id = \"QUIET\"
-text = \"No false alarms.\"
-measure = \"counterfactual.false_alarms\"
-limit = 0
-";
-
-const CAMPAIGN: &str = "schema = 1
-title = \"twins\"
-[[scenarios]]
-id = \"twins\"
-file = \"twins.toml\"
-[[factors]]
-name = \"fault\"
-faults = [[\"spike-1\"], [\"spike-2\"]]
-";
-
-fn written(folder: &Path, scenario: &str, campaign: &str) {
-    std::fs::write(folder.join("twins.toml"), scenario).unwrap();
-    std::fs::write(folder.join("campaign.toml"), campaign).unwrap();
+/// Attack, and how it ends.
+pub struct Attack {
+    pub group: &'static str,
+    pub about: &'static str,
+    pub ends: Ends,
+    /// Carries it out, and returns the status and the words of the command that ends it.
+    tries: fn() -> (i32, String),
 }
 
-/// Results of the two cases, as they are.
-static RESULTS: LazyLock<Vec<Value>> = LazyLock::new(|| {
-    let folder = tempfile::tempdir().unwrap();
-    written(folder.path(), SCENARIO, CAMPAIGN);
-    let plan = Plan::of(&folder.path().join("campaign.toml")).unwrap();
-    let cases: Vec<&Case> = plan.cases.iter().collect();
-    let results = run_alike(plan.planned(cases[0]).unwrap(), &cases);
-    results.into_iter().map(|result| serde_json::to_value(result.unwrap()).unwrap()).collect()
-});
-
-/// Status and words of a command.
-fn octant(folder: &Path, words: &[&str]) -> (u8, String) {
-    let output = octant_in(folder, words);
-    let text =
-        [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    (output.status.code().unwrap() as u8, text.concat())
+const fn refused(because: &'static str) -> Ends {
+    Ends { status: 2, because }
 }
 
-/// Plans a campaign.
-fn planned(scenario: &str, campaign: &str) -> (u8, String) {
-    let folder = tempfile::tempdir().unwrap();
-    written(folder.path(), scenario, campaign);
-    octant(folder.path(), &["campaign", "plan", "campaign.toml", "--out", "out"])
+/// End of `octant verify`: the folder isn't whole.
+const fn found(because: &'static str) -> Ends {
+    Ends { status: Verdict::Fail.exit_code(), because }
 }
 
-/// Changes the stored results, makes their hashes anew, and merges and reports them.
-fn reported(change: impl Fn(usize, &mut Value)) -> (u8, String) {
-    let folder = tempfile::tempdir().unwrap();
-    written(folder.path(), SCENARIO, CAMPAIGN);
-    let plan = Plan::of(&folder.path().join("campaign.toml")).unwrap();
-    let out = folder.path().join("out");
-    plan.write(&out, false).unwrap();
-    for (index, (case, result)) in plan.cases.iter().zip(RESULTS.iter()).enumerate() {
-        let mut result = result.clone();
-        change(index, &mut result);
-        result["summary_blake3"] = hash_of_summary(&result["summary"]).into();
-        results::put(&out, &case.id, &(result.to_string() + "\n"));
+const fn open(because: &'static str) -> Ends {
+    Ends { status: Verdict::Inconclusive.exit_code(), because }
+}
+
+/// Campaign of 22 draws, all of which pass, as one look needs them; and its report.
+fn reported() -> Looked {
+    let looked = Looked::of(22, "");
+    looked.fill(0..22, &[]);
+    looked.octant(&["campaign", "report", "out"], 0);
+    looked.octant(&["verify", "out"], 0);
+    looked
+}
+
+/// Runs a command, and returns its status and its words.
+pub(super) fn says(looked: &Looked, arguments: &[&str]) -> (i32, String) {
+    let output = looked.bench.octant(arguments);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    (output.status.code().unwrap(), said + &String::from_utf8_lossy(&output.stderr))
+}
+
+pub(super) fn verify(looked: &Looked) -> (i32, String) {
+    says(looked, &["verify", "out"])
+}
+
+pub(super) fn out(looked: &Looked, name: &str) -> PathBuf {
+    looked.bench.at("out").join(name)
+}
+
+pub(super) fn edit(path: &Path, change: impl FnOnce(String) -> String) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let changed = change(text.clone());
+    assert_ne!(text, changed, "nothing was changed in {}", path.display());
+    std::fs::write(path, changed).unwrap();
+}
+
+/// Writes an unsigned manifest anew, with the hashes of the files as they are now.
+pub(super) fn forge(looked: &Looked) {
+    let folder = looked.bench.at("out");
+    let manifest = Manifest::read(&folder).unwrap();
+    let path = folder.join("manifest.json");
+    let mut value = serde_json::to_value(&manifest).unwrap();
+    for file in value["files"].as_array_mut().unwrap() {
+        let bytes = std::fs::read(folder.join(file["path"].as_str().unwrap())).unwrap();
+        let sha256 = sha2::Sha256::digest(&bytes);
+        file["bytes"] = bytes.len().into();
+        file["blake3"] = blake3::hash(&bytes).to_hex().as_str().into();
+        file["sha256"] = sha256.iter().map(|byte| format!("{byte:02x}")).collect::<String>().into();
     }
-    let merged = octant(folder.path(), &["campaign", "merge", "out"]);
-    let shown = octant(folder.path(), &["campaign", "report", "out"]);
-    // The report is as severe as the tables.
-    assert_eq!(merged.0, shown.0, "{merged:?} {shown:?}");
-    shown
+    std::fs::write(path, format!("{value:#}\n")).unwrap();
 }
 
-fn check(row: &Row, (status, words): (u8, String)) {
-    assert_eq!(status, row.ends.status, "{}: {words}", row.about);
-    assert!(words.contains(row.ends.because), "{}: {words}", row.about);
+/// Chains the lines of a journal anew.
+fn chained(lines: &[&str]) -> String {
+    let mut before = String::new();
+    let mut text = String::new();
+    for line in lines {
+        let content = line.split_once(' ').map_or(*line, |(_, content)| content);
+        let content = content.trim_end();
+        let hash = blake3::hash(format!("{before}{content}").as_bytes()).to_hex();
+        before = hash.chars().take(32).collect();
+        text += &format!("{before} {content}\n");
+    }
+    text
 }
 
-const NO_FAULTS: Ends = Ends { status: 2, because: "the scenario has no faults" };
-const NO_FAULT: Ends = Ends { status: 2, because: "which not every case can have" };
-const NEVER: Ends = open("never fired");
-const NO_TWIN: Ends = breaks("its own measure is none");
-const OTHER_SHIFT: Ends = breaks("isn't the largest shift of its parameters");
-const OTHER_DELAY: Ends = breaks("isn't the longest delay of its faults");
-const OTHER_TWIN: Ends = breaks("which has the same but for the faults");
+fn extends_until_it_passes() -> (i32, String) {
+    let mut looked = Looked::of(22, "");
+    looked.fill(0..22, &[3]);
+    looked.status(3);
+    looked.extend(200, "");
+    looked.fill(22..200, &[]);
+    looked
+        .status(3)
+        .contains("199 of 200 passed")
+        .then(|| says(&looked, &["campaign", "report", "out"]))
+        .map(|(status, _)| (status, looked.bench.read("report.html")))
+        .unwrap()
+}
+
+fn looks_early() -> (i32, String) {
+    let looked = Looked::of(22, "");
+    looked.fill(0..10, &[3]);
+    says(&looked, &["campaign", "status", "out"])
+}
+
+fn opens_one_case_early() -> (i32, String) {
+    let looked = Looked::of(22, "");
+    looked.fill(0..22, &[]);
+    // One case has no result yet.
+    let partly = Looked::of(22, "");
+    partly.fill(0..21, &[3]);
+    let id = partly.plan.cases[3].id.to_string();
+    partly.octant(&["campaign", "result", "out", &id], 0);
+    says(&partly, &["campaign", "report", "out"])
+        .1
+        .contains("without a disposition")
+        .then_some(())
+        .unwrap();
+    (3, partly.bench.read("dispositions.toml"))
+}
+
+fn extends_the_last_of_several_looks() -> (i32, String) {
+    let mut looked = Looked::of(44, "looks = 2\n");
+    looked.fill(0..44, &[0, 1, 2, 3]);
+    looked.status(3);
+    looked.extend(400, "looks = 2\n");
+    looked.fill(44..400, &[]);
+    says(&looked, &["campaign", "status", "out"])
+}
+
+fn extends_with(
+    looked: &Looked,
+    change: impl FnOnce(String) -> String,
+    file: &str,
+) -> (i32, String) {
+    edit(&looked.bench.at(file), change);
+    edit(&looked.bench.at("campaign.toml"), |text| {
+        text.replace("replicates = 22", "replicates = 200")
+    });
+    says(looked, &["campaign", "plan", "campaign.toml", "--out", "out", "--extend"])
+}
+
+fn changes_the_way_of_looking() -> (i32, String) {
+    let looked = Looked::of(22, "seed = 1\n");
+    looked.fill(0..22, &[3]);
+    looked.status(3);
+    // The same draws, which a claim at any time would count all.
+    extends_with(
+        &looked,
+        |text| text.replace("seed = 1\n", "seed = 1\nlooks = \"open\"\n"),
+        "campaign.toml",
+    )
+}
+
+fn asks_for_less_after_the_look() -> (i32, String) {
+    let looked = Looked::of(22, "seed = 1\n");
+    looked.fill(0..22, &[3]);
+    looked.status(3);
+    extends_with(
+        &looked,
+        |text| text.replace("pass = \"90 %\"", "pass = \"80 %\""),
+        "requirements.toml",
+    )
+}
+
+fn adds_combinations_to_draws_that_were_seen() -> (i32, String) {
+    let looked = Looked::of(22, "seed = 1\n");
+    looked.fill(0..22, &[3]);
+    looked.status(3);
+    edit(&looked.bench.at("campaign.toml"), |text| {
+        text + "[[factors]]\nname = \"latitude\"\nkey = \"site.latitude\"\nvalues = [\"0 deg\", \"60 deg\"]\n"
+    });
+    says(&looked, &["campaign", "plan", "campaign.toml", "--out", "out", "--extend"])
+}
+
+fn leaves_a_journal_line_out() -> (i32, String) {
+    let looked = reported();
+    edit(&out(&looked, JOURNAL), |text| {
+        let lines: Vec<&str> = text.split_inclusive('\n').collect();
+        [lines[0], lines[2]].concat()
+    });
+    forge(&looked);
+    verify(&looked)
+}
+
+fn edits_a_journal_line() -> (i32, String) {
+    let looked = reported();
+    edit(&out(&looked, JOURNAL), |text| {
+        text.replace("\"cases\":22,\"results\":22", "\"cases\":99,\"results\":22")
+    });
+    forge(&looked);
+    verify(&looked)
+}
+
+/// The journal of before the extension is put back, with a manifest that fits.
+fn replays_an_older_journal() -> (i32, String) {
+    let mut looked = Looked::of(22, "");
+    looked.fill(0..22, &[3]);
+    let before = std::fs::read(out(&looked, JOURNAL)).unwrap();
+    looked.status(3);
+    looked.extend(60, "");
+    looked.fill(22..60, &[]);
+    looked.octant(&["campaign", "report", "out"], 3);
+    std::fs::write(out(&looked, JOURNAL), before).unwrap();
+    forge(&looked);
+    verify(&looked)
+}
+
+/// The journal is cut before the look, and chained anew.
+fn forgets_a_look() -> (i32, String) {
+    let looked = reported();
+    edit(&out(&looked, JOURNAL), |text| {
+        let lines: Vec<&str> = text.lines().collect();
+        chained(&lines[..lines.len() - 1])
+    });
+    forge(&looked);
+    verify(&looked)
+}
+
+fn removes_the_journal() -> (i32, String) {
+    let looked = reported();
+    std::fs::remove_file(out(&looked, JOURNAL)).unwrap();
+    verify(&looked)
+}
+
+/// A journal of a plan that was made after the results.
+fn plans_after_the_results() -> (i32, String) {
+    let looked = reported();
+    edit(&out(&looked, JOURNAL), |text| {
+        let year = text.lines().nth(1).unwrap().split("\"at\":\"").nth(1).unwrap()[..4].to_owned();
+        let later = text.replacen(&format!("\"at\":\"{year}"), "\"at\":\"2999", 1);
+        chained(&later.lines().collect::<Vec<_>>())
+    });
+    forge(&looked);
+    verify(&looked)
+}
+
+const ATTACKS: [Attack; 25] = [
+    Attack {
+        group: "looks",
+        about: "looks at a campaign before its look, to see whether to go on",
+        ends: open("not looked at yet"),
+        tries: looks_early,
+    },
+    Attack {
+        group: "looks",
+        about: "looks, and extends the plan until it passes",
+        ends: open("no part of the claim"),
+        tries: extends_until_it_passes,
+    },
+    Attack {
+        group: "looks",
+        about: "opens the result of one case before the look",
+        ends: open("outcomes of single cases were shown before the look"),
+        tries: opens_one_case_early,
+    },
+    Attack {
+        group: "looks",
+        about: "extends the plan after the last of several looks",
+        ends: open("no look is left"),
+        tries: extends_the_last_of_several_looks,
+    },
+    Attack {
+        group: "looks",
+        about: "plans to look openly after the look",
+        ends: refused("this plan has other looks or requirements"),
+        tries: changes_the_way_of_looking,
+    },
+    Attack {
+        group: "looks",
+        about: "asks for a smaller probability after the look",
+        ends: refused("this plan has other looks or requirements"),
+        tries: asks_for_less_after_the_look,
+    },
+    Attack {
+        group: "looks",
+        about: "adds combinations to draws that were seen",
+        ends: refused("more cases of the draws that were seen"),
+        tries: adds_combinations_to_draws_that_were_seen,
+    },
+    Attack {
+        group: "journal",
+        about: "leaves a line of the journal out, with a manifest that fits",
+        ends: found("the checksum doesn't fit: a line was changed or left out"),
+        tries: leaves_a_journal_line_out,
+    },
+    Attack {
+        group: "journal",
+        about: "edits a line of the journal, with a manifest that fits",
+        ends: found("the checksum doesn't fit: a line was changed or left out"),
+        tries: edits_a_journal_line,
+    },
+    Attack {
+        group: "journal",
+        about: "puts the journal of before an extension back, with a manifest that fits",
+        ends: found("it is an older one, or of another campaign"),
+        tries: replays_an_older_journal,
+    },
+    Attack {
+        group: "journal",
+        about: "cuts a look off and chains the journal anew, with a manifest that fits",
+        ends: found("looks, the manifest tells of 1"),
+        tries: forgets_a_look,
+    },
+    Attack {
+        group: "journal",
+        about: "removes the journal",
+        ends: found("campaign.journal is missing"),
+        tries: removes_the_journal,
+    },
+    Attack {
+        group: "journal",
+        about: "makes a journal after the results, with a manifest that fits",
+        ends: found("begins after the first result was stored"),
+        tries: plans_after_the_results,
+    },
+    Attack {
+        group: "plan of a campaign",
+        about: "writes another seed into the plan",
+        ends: refused("it was changed after it was made"),
+        tries: content::chooses_a_seed_in_the_plan,
+    },
+    Attack {
+        group: "plan of a campaign",
+        about: "says that a chosen seed comes from the plan",
+        ends: refused("it was changed after it was made"),
+        tries: content::chooses_a_seed_and_an_id,
+    },
+    Attack {
+        group: "plan of a campaign",
+        about: "takes the failing case out of the plan",
+        ends: refused("it was changed after it was made"),
+        tries: content::takes_a_case_out_of_the_plan,
+    },
+    Attack {
+        group: "plan of a campaign",
+        about: "plans fewer draws after the last one has failed",
+        ends: refused("another plan is there"),
+        tries: content::plans_fewer_draws_afterwards,
+    },
+    Attack {
+        group: "plan of a campaign",
+        about: "makes the limit wider after the results",
+        ends: refused("it was changed after the campaign was planned"),
+        tries: content::edits_the_limit_of_a_requirement,
+    },
+    Attack {
+        group: "results of a campaign",
+        about: "leaves the failing case without a result",
+        ends: open("1 case has no result"),
+        tries: content::leaves_a_failing_case_without_a_result,
+    },
+    Attack {
+        group: "results of a campaign",
+        about: "runs a failing case until it passes",
+        ends: Ends { status: Verdict::Error.exit_code(), because: "came to two results" },
+        tries: content::repeats_a_case_until_it_passes,
+    },
+    Attack {
+        group: "results of a campaign",
+        about: "stores the result of another draw for the one that fails",
+        ends: Ends { status: Verdict::Error.exit_code(), because: "its case_blake3 is" },
+        tries: content::copies_a_result_of_another_draw,
+    },
+    Attack {
+        group: "results of a campaign",
+        about: "adds the part of another plan",
+        ends: refused("results of 22 cases that the plan doesn't have"),
+        tries: content::adds_a_part_of_another_plan,
+    },
+    Attack {
+        group: "evidence of a campaign",
+        about: "writes pass into the statistics, with a manifest that fits",
+        ends: found("statistics.json: its verdict is pass, the results give inconclusive"),
+        tries: content::edits_statistics,
+    },
+    Attack {
+        group: "evidence of a campaign",
+        about: "edits a number of the page",
+        ends: found("report.html was changed"),
+        tries: content::edits_the_page,
+    },
+    Attack {
+        group: "evidence of a campaign",
+        about: "writes pass into the manifest",
+        ends: found("manifest.json: its verdict is pass, the results give inconclusive"),
+        tries: content::edits_the_verdict_of_the_manifest,
+    },
+];
 
 /// Returns the rows of the table.
 pub fn rows() -> Vec<Row> {
-    let row = |about, ends| Row { group: "campaign", about, over: "campaign", ends };
-    vec![
-        row("requires an effect of faults, in a scenario without any", NO_FAULTS),
-        row(
-            "has cases without a fault among those that are compared with a twin: each would pass",
-            NO_FAULT,
-        ),
-        row("has a fault that isn't reached before the end of the run", NEVER),
-        row("leaves the twin out of a stored result", NO_TWIN),
-        row(
-            "edits the largest shift of a stored result, with its check and its hashes",
-            OTHER_SHIFT,
-        ),
-        row("edits the delay of a detection, with its hashes", OTHER_DELAY),
-        row("takes away the false alarms of a twin, in one of the cases that share it", OTHER_TWIN),
-        row("mixes results whose common twin another version made", OTHER_TWIN),
-    ]
-}
-
-#[test]
-fn the_campaign_itself_passes() {
-    let (status, words) = reported(|_, _| {});
-    assert_eq!(status, 0, "{words}");
-    for result in RESULTS.iter() {
-        assert_eq!(result["verdict"], "pass", "{:?}", result["summary"]["reasons"]);
-    }
-    let twin =
-        |place: usize| RESULTS[place]["summary"]["counterfactual"]["twin_stream_hash"].clone();
-    assert_eq!(twin(0), twin(1), "one twin for both");
-}
-
-#[test]
-fn plans_that_can_show_nothing_are_refused() {
-    let (before, rest) = SCENARIO.split_once("[[faults]]").unwrap();
-    let after = &rest[rest.find("[[requirements]]").unwrap()..];
-    let campaign = CAMPAIGN.split("[[factors]]").next().unwrap();
-    check(&rows()[0], planned(&format!("{before}{after}"), campaign));
-    let campaign = CAMPAIGN.replace("faults = [", "faults = [[], ");
-    check(&rows()[1], planned(SCENARIO, &campaign));
-}
-
-#[test]
-fn a_fault_that_never_comes_shows_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let late = SCENARIO.replace("{ at = \"60 s\" }", "{ when = \"nis above 1e9\" }");
-    written(folder.path(), &late, CAMPAIGN);
-    let plan = octant(folder.path(), &["campaign", "plan", "campaign.toml", "--out", "out"]);
-    assert_eq!(plan.0, 0, "{plan:?}");
-    check(&rows()[2], octant(folder.path(), &["campaign", "run", "out"]));
-    let trace = octant(folder.path(), &["campaign", "trace", "out"]);
-    assert!(trace.1.contains("1 of 2 checks are inconclusive"), "{}", trace.1);
-}
-
-#[test]
-fn results_that_were_changed_are_refused() {
-    let without = |_: usize, result: &mut Value| result["summary"]["counterfactual"] = Value::Null;
-    check(&rows()[3], reported(without));
-    let check_of = |summary: &mut Value, value: f64| {
-        let shift = &mut summary["requirements"][0];
-        (shift["value"], shift["margin"]) = (value.into(), (3.0 - value).into());
+    let row = |attack: &Attack| Row {
+        group: attack.group,
+        about: attack.about,
+        over: "folder",
+        ends: attack.ends,
     };
-    check(
-        &rows()[4],
-        reported(|_, result| {
-            let summary = &mut result["summary"];
-            summary["counterfactual"]["worst_shift_sigma"] = 1e-3.into();
-            check_of(summary, 1e-3);
-        }),
-    );
-    check(
-        &rows()[5],
-        reported(|_, result| {
-            result["summary"]["counterfactual"]["detection_delay_max_s"] = 0.001.into();
-        }),
-    );
-    // With an alarm in the twin of one case alone the other's is gone.
-    check(
-        &rows()[6],
-        reported(|index, result| {
-            if index == 1 {
-                result["verdict"] = "fail".into();
-                let summary = &mut result["summary"];
-                summary["verdict"] = "fail".into();
-                summary["counterfactual"]["false_alarms"] = 1.into();
-                let quiet = &mut summary["requirements"][2];
-                quiet["verdict"] = "fail".into();
-                (quiet["value"], quiet["margin"]) = (1.0.into(), (-1.0).into());
-            }
-        }),
-    );
-    check(
-        &rows()[7],
-        reported(|index, result| {
-            if index == 0 {
-                let hash = "0123456789abcdef".repeat(4);
-                result["summary"]["counterfactual"]["twin_stream_hash"] = hash.into();
-            }
-        }),
-    );
+    ATTACKS.iter().map(row).collect()
+}
+
+/// Returns whether a group of rows is of a person, and not of a unit.
+pub fn is_of_person(group: &str) -> bool {
+    ATTACKS.iter().any(|attack| attack.group == group)
+}
+
+#[test]
+fn no_attack_on_a_campaign_ends_in_a_pass() {
+    for attack in &ATTACKS {
+        let (status, said) = (attack.tries)();
+        assert_eq!(status, i32::from(attack.ends.status), "{}: {said}", attack.about);
+        assert!(said.contains(attack.ends.because), "{}: {said}", attack.about);
+    }
+}
+
+/// An honest campaign passes, and its folder is whole.
+#[test]
+fn an_honest_campaign_passes() {
+    let looked = reported();
+    assert!(verify(&looked).1.contains("verdict: pass"));
+    content::edits_junit();
 }

@@ -7,6 +7,8 @@
 mod adaptive;
 mod answers;
 mod bench;
+mod campaign_content;
+mod campaign_twins;
 mod campaigns;
 mod fmu;
 mod honest;

@@ -1,6 +1,8 @@
 //! Page of all attacks, generated from the tests themselves.
 
-use super::{Row, adaptive, answers, bench, campaigns, fmu, honest, sessions, twins};
+use super::{
+    Row, adaptive, answers, bench, campaign_twins, campaigns, fmu, honest, sessions, twins,
+};
 use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -16,6 +18,7 @@ fn rows() -> Vec<Row> {
         twins::rows(),
         fmu::rows(),
         bench::rows(),
+        campaign_twins::rows(),
         campaigns::rows(),
     ];
     parts.concat()
@@ -48,7 +51,9 @@ fn page() -> String {
          The unit is the core itself with its answers altered, in 20 s of calibration through a move and 10 s of\n\
          navigation at 50 Hz. Without the alteration it passes, over each port: the honest neighbour of each. Those that adapt\n\
          navigate for 20 min at 8 Hz after 10 min of calibration, and answer with what they know: most are found by the\n\
-         [noise of their samples](../followed.md), the others by requirements that the honest neighbour keeps.\n",
+         [noise of their samples](../followed.md), the others by requirements that the honest neighbour keeps.\n\
+         Of a campaign the attacker is a person who has its folder, which is unsigned. Refused is the command that would use\n\
+         it; `octant verify` ends as fail where a folder isn't whole.\n",
         counted.join(", ")
     );
     let mut groups: Vec<&str> = Vec::new();
@@ -58,7 +63,8 @@ fn page() -> String {
         }
     }
     for group in groups {
-        let who = if group == "campaign" { "Somebody who" } else { "A unit that" };
+        let of_person = group == "campaign" || campaigns::is_of_person(group);
+        let who = if of_person { "A person who" } else { "A unit that" };
         let _ = writeln!(
             text,
             "## {group}\n\n| {who} … | over | ends as | because of |\n|---|---|---|---|"

@@ -2,7 +2,7 @@
 
 mod xml;
 
-pub use xml::{JunitCase, JunitCases, JunitSuite, document, write_document};
+pub use xml::{JunitCase, JunitCases, JunitSuite, JunitTimes, document, write_document};
 
 use super::summary::{FaultResult, Summary};
 use super::verdict::RequirementResult;
@@ -10,17 +10,19 @@ use octant_verdict::Verdict;
 use std::io;
 
 /// Writes the run as JUnit XML: one suite named after the scenario, one case for each requirement, named by its id, with
-/// properties `verifies` and `required`, one for each fault (that it fired), and one for the run itself.
+/// properties `verifies` and `required`, one for each fault (that it fired), and one for the run itself, which has the
+/// time of the run.
 ///
 /// # Errors
 /// If the XML can't be written.
-pub fn junit(summary: &Summary) -> io::Result<String> {
+pub fn junit(summary: &Summary, times: Option<JunitTimes>) -> io::Result<String> {
     junit_of(
         &summary.scenario,
         summary.seed,
         &summary.requirements,
         &summary.faults,
         (summary.verdict, &summary.reasons),
+        times,
     )
 }
 
@@ -34,6 +36,7 @@ pub fn junit_of(
     requirements: &[RequirementResult],
     faults: &[FaultResult],
     (verdict, reasons): (Verdict, &[String]),
+    times: Option<JunitTimes>,
 ) -> io::Result<String> {
     let mut cases: Vec<_> = requirements.iter().map(|result| checked(name, result)).collect();
     cases.extend(faults.iter().map(|fault| fired(name, fault)));
@@ -41,12 +44,13 @@ pub fn junit_of(
         name: "run".to_owned(),
         class: name.to_owned(),
         properties: Vec::new(),
+        times,
         verdict,
         message: reasons.join("; "),
     });
     let properties =
         vec![("seed", seed.to_string()), ("octant", env!("CARGO_PKG_VERSION").to_owned())];
-    document("octant", &[JunitSuite { name: name.to_owned(), properties, cases }])
+    document("octant", &[JunitSuite { name: name.to_owned(), properties, times, cases }])
 }
 
 fn checked(class: &str, result: &RequirementResult) -> JunitCase {
@@ -57,6 +61,7 @@ fn checked(class: &str, result: &RequirementResult) -> JunitCase {
         name: result.id.clone(),
         class: class.to_owned(),
         properties: vec![("verifies", result.id.clone()), ("required", sentence.clone())],
+        times: None,
         verdict: result.verdict,
         message: match (result.value, result.reason.as_ref()) {
             (Some(_), _) => format!("found {value}, required {sentence}"),
@@ -82,6 +87,7 @@ fn fired(class: &str, fault: &FaultResult) -> JunitCase {
         name: format!("fault {} ({}) fired", fault.id, fault.kind),
         class: class.to_owned(),
         properties: properties.collect(),
+        times: None,
         verdict,
         message,
     }

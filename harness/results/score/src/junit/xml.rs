@@ -1,10 +1,13 @@
-//! JUnit XML, in the flavour of nextest that CI systems read.
+//! JUnit XML as CI systems read it: within the schema of Jenkins' xUnit plugin (`junit-10.xsd`), which is the strictest. It
+//! knows no properties of a test case: they are lines `[[PROPERTY|NAME=VALUE]]` of its `system-out`, which test
+//! management systems read.
 
 use octant_base::printable::printable;
 use octant_verdict::Verdict;
 use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, Event};
+use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 use std::io;
+use std::time::SystemTime;
 
 /// Suite of test cases.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,8 +16,27 @@ pub struct JunitSuite<C = Vec<JunitCase>> {
     pub name: String,
     /// Names and values of its properties.
     pub properties: Vec<(&'static str, String)>,
+    /// Time of its tests.
+    pub times: Option<JunitTimes>,
     /// Test cases.
     pub cases: C,
+}
+
+/// Time in which tests ran.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JunitTimes {
+    /// Beginning.
+    pub started: SystemTime,
+    /// End.
+    pub ended: SystemTime,
+}
+
+impl JunitTimes {
+    /// Duration as the schema has it, s.
+    fn seconds(self) -> String {
+        let duration = self.ended.duration_since(self.started).unwrap_or_default();
+        format!("{}.{:03}", duration.as_secs(), duration.subsec_millis())
+    }
 }
 
 /// Test cases of a suite, which need not be in memory together.
@@ -67,6 +89,8 @@ pub struct JunitCase {
     pub class: String,
     /// Names and values of its properties.
     pub properties: Vec<(&'static str, String)>,
+    /// Time in which it ran, where that is known.
+    pub times: Option<JunitTimes>,
     /// Verdict. JUnit has no "inconclusive": it becomes an error of that type, because it must never
     /// count as passed.
     pub verdict: Verdict,
@@ -86,18 +110,27 @@ impl JunitCase {
     }
 
     fn write(&self, writer: &mut Writer<impl io::Write>) -> io::Result<()> {
-        let tag = tag("testcase", &[("name", &self.name), ("classname", &self.class)]);
+        let mut tag = tag("testcase", &[("name", &self.name), ("classname", &self.class)]);
+        if let Some(times) = self.times {
+            tag.push_attribute(("time", &*times.seconds()));
+        }
         let element = self.element();
         if self.properties.is_empty() && element.is_none() {
             return writer.write_event(Event::Empty(tag));
         }
         writer.write_event(Event::Start(tag))?;
-        properties(&self.properties, writer)?;
         if let Some(element) = element {
             let kind = self.verdict.name();
             let attributes = [("message", self.message.as_str()), ("type", kind)];
             let shown = if element == "skipped" { &attributes[..1] } else { &attributes };
             writer.write_event(Event::Empty(self::tag(element, shown)))?;
+        }
+        if !self.properties.is_empty() {
+            let line = |(name, value): &(&str, String)| format!("[[PROPERTY|{name}={value}]]");
+            let lines = self.properties.iter().map(line).collect::<Vec<_>>().join("\n");
+            writer.write_event(Event::Start(BytesStart::new("system-out")))?;
+            writer.write_event(Event::Text(BytesText::new(&in_lines(&lines))))?;
+            writer.write_event(Event::End(BytesEnd::new("system-out")))?;
         }
         writer.write_event(Event::End(BytesEnd::new("testcase")))
     }
@@ -131,7 +164,6 @@ pub fn write_document<C: JunitCases>(
     let attributes = [
         ("name", name),
         ("tests", &sum(|all| all.tests)),
-        ("skipped", &sum(|all| all.skipped)),
         ("failures", &sum(|all| all.failures)),
         ("errors", &sum(|all| all.errors)),
     ];
@@ -148,7 +180,7 @@ fn write_suite<C: JunitCases>(
     numbers: CaseNumbers,
     writer: &mut Writer<impl io::Write>,
 ) -> io::Result<()> {
-    let tag = tag(
+    let mut tag = tag(
         "testsuite",
         &[
             ("name", &suite.name),
@@ -158,6 +190,10 @@ fn write_suite<C: JunitCases>(
             ("failures", &numbers.failures.to_string()),
         ],
     );
+    if let Some(times) = suite.times {
+        tag.push_attribute(("time", &*times.seconds()));
+        tag.push_attribute(("timestamp", &*octant_base::utc::seconds(times.started)));
+    }
     if suite.properties.is_empty() && numbers.tests == 0 {
         return writer.write_event(Event::Empty(tag));
     }
@@ -180,6 +216,11 @@ fn properties(
         writer.write_event(Event::Empty(property))?;
     }
     writer.write_event(Event::End(BytesEnd::new("properties")))
+}
+
+/// Escapes control characters but line ends.
+fn in_lines(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
 /// Makes a tag with attributes. Control characters are escaped: XML has no form for most of them, and

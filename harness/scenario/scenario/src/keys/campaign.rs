@@ -2,10 +2,12 @@
 
 use super::definition::{Bounds, Kind, SCHEMA};
 use super::table::{
-    At, Of, Raw, boolean, choice, form_tables, forms, integer, keys, number, numbers, si, table,
-    tables, text,
+    At, Of, Raw, Value, boolean, choice, form_tables, forms, integer, keys, number, numbers, si,
+    table, tables, text,
 };
+use crate::error::Problem;
 use crate::quantity::UnitDimension;
+use crate::read::reader::Reader;
 use octant_toml_tree::Node;
 
 /// Design of the draws over the replicates.
@@ -24,7 +26,8 @@ keys! {
         #[expect(dead_code, reason = "it has one value")]
         schema: u32 = integer(SCHEMA, SCHEMA), required, "Version of the format.";
         title: String = text(), required, "Name of the campaign.";
-        seed: u64 = integer(0, i64::MAX), "1",
+        seed: Option<u64> = integer::<u64>(0, i64::MAX),
+            derived("the hash of what the plan says of scenarios, requirements, factors and looks"),
             "Of what is drawn; the first replicate runs with it, the next with the next number.";
         replicates: u32 = integer(1, 1_000_000), "1",
             "Runs of every combination, each with a seed and draws of its own.";
@@ -45,7 +48,40 @@ keys! {
         limits: LimitsKeys = table(), section, "What a case may use.";
         stop: Option<EarlyStopKeys> = table::<EarlyStopKeys>(), absent("every case is run"),
             "When enough is known.";
+        looks: At<LookSpec> = looks(), "once",
+            "How often the results are looked at before a required probability counts as shown.";
     }
+}
+
+/// How often the results of a campaign are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LookSpec {
+    /// Once, when every case has run.
+    Once,
+    /// So many times, after equal parts of the draws.
+    Planned(u32),
+    /// At any time.
+    Open,
+}
+
+impl Value for LookSpec {
+    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+        table.integer(key).map(|count| Some(Self::Planned(count)))
+    }
+}
+
+/// Largest number of planned looks.
+const LOOKS_MAX: u32 = 50;
+
+const fn looks() -> Of<LookSpec> {
+    const WAYS: Kind = Kind::Choice(&[
+        ("once", "when every case has run; draws that are added later don't count"),
+        ("open", "at any time, by a bound that holds whenever it is looked at"),
+    ]);
+    Of::or_choice(
+        const { Kind::Either(&[WAYS, Kind::Integer(2, LOOKS_MAX as i64)]) },
+        const { &[LookSpec::Once, LookSpec::Open] },
+    )
 }
 
 keys! {

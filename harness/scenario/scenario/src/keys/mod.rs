@@ -30,10 +30,10 @@ pub(crate) use calibration::{
     InitialKeys, Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation,
     SigmaLimitKeys, StopKeys,
 };
-pub use campaign::Design;
 pub(crate) use campaign::{
     CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, LimitsKeys, MemberKeys,
 };
+pub use campaign::{Design, LookSpec};
 pub use definition::SCHEMA;
 pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, cases_in_words};
 pub(crate) use drive::DriveKeys;
