@@ -4,7 +4,7 @@
 use super::convert::{ChannelConversion, conversion, fits};
 use super::find::{FoundElements, ValueWay, allowed, described, find, unknown};
 use octant_fmu_host::description::{Description, Variable};
-use octant_fmu_host::instance::{AccessPlan, InstanceError};
+use octant_fmu_host::instance::{AccessPlan, InstanceError, whole};
 use octant_scenario::channel::Channel;
 use octant_scenario::{EntryPlace, Fmu, Made, Mapped, Problem};
 
@@ -378,5 +378,18 @@ pub fn start(variable: &Variable, numbers: &mut [f64]) {
             "false" => 0.0,
             text => text.parse().unwrap_or(0.0),
         });
+    }
+}
+
+/// Fills in the start values as [`start`] does, whole numbers of 64 bits as their bits.
+pub fn start_exactly(variable: &Variable, numbers: &mut [f64]) {
+    start(variable, numbers);
+    if !whole::is_wide(variable.kind) {
+        return;
+    }
+    for (index, number) in numbers.iter_mut().enumerate() {
+        let text = variable.start.get(index).or(variable.start.first());
+        let found = text.and_then(|text| whole::parse(text)).unwrap_or(0);
+        *number = whole::to_bits(variable.kind, found).unwrap_or(0.0);
     }
 }

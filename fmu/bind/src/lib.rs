@@ -9,6 +9,7 @@
 //! | [`settings`] | parameters, checked against the description |
 //! | [`open`] | from a scenario to an FMU that can be started |
 //! | [`OpenedFmus`] | FMUs of a run, each opened once |
+//! | `starts` | values with which an FMU starts |
 //! | [`stepper`] | a started FMU, stepped in time |
 
 pub mod bind;
@@ -17,6 +18,7 @@ pub mod find;
 pub mod open;
 mod opened;
 pub mod settings;
+mod starts;
 pub mod stepper;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;

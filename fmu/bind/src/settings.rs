@@ -2,38 +2,14 @@
 
 use super::convert::{ChannelConversionError, article, conversion};
 use super::find::{UnknownVariable, count, find, unknown};
+pub use super::starts::Starts;
 use octant_fmu_host::description::{
     Causality, Description, Initial, Variability, Variable, VariableType,
 };
-use octant_fmu_host::instance::{Access, Instance, InstanceError, VariableGroup};
+use octant_fmu_host::instance::{Access, InstanceError, VariableGroup, whole};
 use octant_scenario::channel::{Channel, Class};
 use octant_scenario::{Set, UnitDimension, quantity_of};
 use std::ops::Range;
-
-/// Values that are set before an FMU starts.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Starts {
-    /// Numbers by group, those of configuration mode first.
-    numbers: Vec<(VariableGroup, Vec<f64>)>,
-    /// Texts.
-    texts: Vec<(VariableGroup, Vec<String>)>,
-}
-
-impl Starts {
-    /// Sets the values.
-    ///
-    /// # Errors
-    /// If the FMU refuses.
-    pub fn apply(&self, instance: &mut dyn Instance) -> Result<(), InstanceError> {
-        for (group, numbers) in &self.numbers {
-            instance.set(group, numbers)?;
-        }
-        for (group, texts) in &self.texts {
-            instance.set_strings(group, texts)?;
-        }
-        Ok(())
-    }
-}
 
 /// Reason why a value can't be set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -119,6 +95,7 @@ pub enum SettingError {
 fn in_words(value: &Set) -> String {
     match value {
         Set::Number(number) => format!("the number {number}"),
+        Set::Whole(number) => format!("the number {number}"),
         Set::Flag(flag) => flag.to_string(),
         Set::Text(text) => format!("{text:?}"),
     }
@@ -130,13 +107,14 @@ pub struct ValueSettings<'a> {
     description: &'a Description,
     numbers: Vec<(&'a Variable, Vec<f64>)>,
     texts: Vec<(&'a Variable, Vec<String>)>,
+    bytes: Vec<(&'a Variable, Vec<Vec<u8>>)>,
 }
 
 impl<'a> ValueSettings<'a> {
     /// Creates an empty collection for an FMU.
     #[must_use]
     pub fn new(description: &'a Description) -> Self {
-        Self { description, numbers: Vec::new(), texts: Vec::new() }
+        Self { description, numbers: Vec::new(), texts: Vec::new(), bytes: Vec::new() }
     }
 
     /// Sets a variable by its name.
@@ -156,6 +134,11 @@ impl<'a> ValueSettings<'a> {
                 let texts = texts.collect::<Result<_, _>>()?;
                 self.texts.retain(|(known, _)| !std::ptr::eq(*known, variable));
                 self.texts.push((variable, texts));
+            } else if variable.kind == VariableType::Binary {
+                let bytes = values.iter().map(|value| hexadecimal(variable, value));
+                let bytes = bytes.collect::<Result<_, _>>()?;
+                self.bytes.retain(|(known, _)| !std::ptr::eq(*known, variable));
+                self.bytes.push((variable, bytes));
             } else {
                 let numbers = values.iter().map(|value| number(description, variable, value));
                 self.put(variable, numbers.collect::<Result<_, _>>()?);
@@ -170,7 +153,11 @@ impl<'a> ValueSettings<'a> {
     /// If the FMU doesn't have it.
     pub fn own(&mut self, name: &str, numbers: &[f64]) -> Result<(), SettingError> {
         for (variable, range) in whole(self.description, name, numbers.len(), settable)? {
-            self.put(variable, numbers[range].to_vec());
+            let carried = |number: &f64| {
+                let whole = if whole::is_wide(variable.kind) { whole::of(*number) } else { None };
+                whole.and_then(|whole| whole::to_bits(variable.kind, whole)).unwrap_or(*number)
+            };
+            self.put(variable, numbers[range].iter().map(carried).collect());
         }
         Ok(())
     }
@@ -189,7 +176,7 @@ impl<'a> ValueSettings<'a> {
     pub fn finish(self) -> Result<Starts, InstanceError> {
         let mut numbers: Vec<(VariableGroup, Vec<f64>)> = Vec::new();
         for (variable, values) in self.numbers {
-            let one = VariableGroup::of(self.description, variable)?;
+            let one = VariableGroup::of(self.description, variable)?.exactly();
             let same = |(group, _): &&mut (VariableGroup, Vec<f64>)| {
                 group.kind == one.kind && group.access == one.access
             };
@@ -206,7 +193,15 @@ impl<'a> ValueSettings<'a> {
         let texts = self.texts.into_iter();
         let texts = texts
             .map(|(variable, texts)| Ok((VariableGroup::of(self.description, variable)?, texts)));
-        Ok(Starts { numbers, texts: texts.collect::<Result<_, InstanceError>>()? })
+        let bytes = self
+            .bytes
+            .into_iter()
+            .map(|(variable, bytes)| Ok((VariableGroup::of(self.description, variable)?, bytes)));
+        Ok(Starts {
+            numbers,
+            texts: texts.collect::<Result<_, InstanceError>>()?,
+            bytes: bytes.collect::<Result<_, InstanceError>>()?,
+        })
     }
 }
 
@@ -255,7 +250,7 @@ fn check_settable(variable: &Variable) -> Result<(), SettingError> {
 }
 
 /// Returns whether a variable has a start value that may be changed.
-fn settable(variable: &Variable) -> bool {
+pub(super) fn settable(variable: &Variable) -> bool {
     if variable.variability == Variability::Constant {
         return false;
     }
@@ -284,28 +279,41 @@ fn number(
     variable: &Variable,
     value: &Set,
 ) -> Result<f64, SettingError> {
+    let mut carried = None;
     let number = match (variable.kind, value) {
         (VariableType::Boolean, Set::Flag(flag)) => return Ok(f64::from(u8::from(*flag))),
         (VariableType::Boolean, other) => return Err(wrong(variable, other, "true or false")),
         (VariableType::Binary | VariableType::Clock | VariableType::String, other) => {
-            return Err(wrong(variable, other, "another variable: such can't be set here"));
+            return Err(wrong(variable, other, "another variable: a clock ticks, and isn't set"));
         }
         (VariableType::Enumeration, value) => return item(description, variable, value),
         (VariableType::Float64 | VariableType::Float32, Set::Number(number)) => *number,
+        (VariableType::Float64 | VariableType::Float32, Set::Whole(whole)) => whole::exact(*whole)
+            .ok_or_else(|| wrong(variable, value, "a number that the type has"))?,
         (VariableType::Float64 | VariableType::Float32, Set::Text(text)) => {
             quantity(description, variable, text)?
         }
         (VariableType::Float64 | VariableType::Float32, other) => {
             return Err(wrong(variable, other, "a number, or a quantity with its unit"));
         }
-        (kind, Set::Number(number)) => {
+        (kind, value) => {
             let (from, to) = limits(kind);
-            if number.fract() != 0.0 || !(from..=to).contains(number) {
-                return Err(wrong(variable, value, &format!("a whole number from {from} to {to}")));
-            }
-            *number
+            let expected =
+                || wrong(variable, value, &format!("a whole number from {from} to {to}"));
+            let whole = match value {
+                // Beyond this size digits may have been lost already.
+                Set::Number(number) => {
+                    whole::of(*number).filter(|whole| whole.abs() <= whole::EXACT_MAX)
+                }
+                Set::Whole(whole) => Some(*whole),
+                // A configuration file has no whole numbers beyond 2⁶³, but texts.
+                Set::Text(text) => text.trim().parse().ok(),
+                Set::Flag(_) => None,
+            };
+            let whole = whole.filter(|whole| (from..=to).contains(whole)).ok_or_else(expected)?;
+            carried = if whole::is_wide(kind) { whole::to_bits(kind, whole) } else { None };
+            whole as f64
         }
-        (_, other) => return Err(wrong(variable, other, "a whole number")),
     };
     let unit = variable.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
     let beyond = |side, limit| SettingError::Limit {
@@ -321,7 +329,7 @@ fn number(
     if let Some(max) = variable.max.filter(|max| number > *max) {
         return Err(beyond("at most", max));
     }
-    Ok(number)
+    Ok(carried.unwrap_or(number))
 }
 
 /// Returns the value of an enumeration's item, by its name or its number.
@@ -333,11 +341,16 @@ fn item(description: &Description, variable: &Variable, value: &Set) -> Result<f
         .unwrap_or_default();
     let found = match value {
         Set::Text(text) => items.iter().find(|(_, name)| name == text),
-        Set::Number(number) => items.iter().find(|(item, _)| *item as f64 == *number),
+        Set::Number(number) => {
+            let whole = whole::of(*number).filter(|whole| whole.abs() <= whole::EXACT_MAX);
+            items.iter().find(|(item, _)| Some(i128::from(*item)) == whole)
+        }
+        Set::Whole(whole) => items.iter().find(|(item, _)| i128::from(*item) == *whole),
         Set::Flag(_) => None,
     };
-    if let Some((item, _)) = found {
-        return Ok(*item as f64);
+    let bits = found.and_then(|(item, _)| whole::to_bits(variable.kind, i128::from(*item)));
+    if let Some(bits) = bits {
+        return Ok(bits);
     }
     let known: Vec<String> =
         items.iter().map(|(item, name)| format!("{name:?} ({item})")).collect();
@@ -370,17 +383,34 @@ fn quantity(
     Ok(conversion.from_si(found.si))
 }
 
-/// Returns the range of a whole-number type that f64 holds exactly.
-fn limits(kind: VariableType) -> (f64, f64) {
-    const EXACT: f64 = 9_007_199_254_740_992.0;
+/// Returns the range of a whole-number type.
+fn limits(kind: VariableType) -> (i128, i128) {
     match kind {
         VariableType::Int8 => (i8::MIN.into(), i8::MAX.into()),
-        VariableType::UInt8 => (0.0, u8::MAX.into()),
+        VariableType::UInt8 => (0, u8::MAX.into()),
         VariableType::Int16 => (i16::MIN.into(), i16::MAX.into()),
-        VariableType::UInt16 => (0.0, u16::MAX.into()),
+        VariableType::UInt16 => (0, u16::MAX.into()),
         VariableType::Int32 => (i32::MIN.into(), i32::MAX.into()),
-        VariableType::UInt32 => (0.0, u32::MAX.into()),
-        VariableType::UInt64 => (0.0, EXACT),
-        _ => (-EXACT, EXACT),
+        VariableType::UInt32 => (0, u32::MAX.into()),
+        VariableType::UInt64 => (0, u64::MAX.into()),
+        _ => (i64::MIN.into(), i64::MAX.into()),
     }
+}
+
+/// Reads the bytes of a Binary, written as hexadecimal digits.
+fn hexadecimal(variable: &Variable, value: &Set) -> Result<Vec<u8>, SettingError> {
+    let digits = match value {
+        Set::Text(text) => text.clone(),
+        // Digits alone were read as a number, which has lost its first zeros.
+        Set::Number(_) | Set::Whole(_) | Set::Flag(_) => String::from("-"),
+    };
+    let digits = digits.trim();
+    let digits = digits.strip_prefix("0x").unwrap_or(digits);
+    let pairs = digits.as_bytes().chunks(2).map(|pair| {
+        let text = std::str::from_utf8(pair).ok().filter(|text| text.len() == 2)?;
+        u8::from_str_radix(text, 16).ok().filter(|_| !text.starts_with('+'))
+    });
+    pairs.collect::<Option<Vec<u8>>>().ok_or_else(|| {
+        wrong(variable, value, "bytes as pairs of hexadecimal digits in quotes, such as \"00ff2a\"")
+    })
 }

@@ -10,7 +10,7 @@ use octant_fmu_host::description::{
     ModelStructure, Standard, UnitDefinition, Variability, Variable, VariableType,
 };
 use octant_fmu_host::instance::{
-    FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup,
+    FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup, whole,
 };
 
 /// Builds a variable with usual attributes.
@@ -311,9 +311,13 @@ impl<C: ModelComponent> Instance for OwnModel<C> {
         for (slot, value) in self.slots(group).into_iter().zip(values) {
             match group.kind {
                 VariableType::Float64 => self.values.set_real(slot, *value),
+                VariableType::Enumeration if group.bits => {
+                    self.values.set_integer(slot, value.to_bits() as i32)
+                }
                 VariableType::Int32 | VariableType::Enumeration => {
                     self.values.set_integer(slot, *value as i32)
                 }
+                VariableType::UInt64 if group.bits => self.values.set_count(slot, value.to_bits()),
                 VariableType::UInt64 => self.values.set_count(slot, *value as u64),
                 VariableType::Boolean => self.values.set_boolean(slot, *value != 0.0),
                 other => panic!("no variable is a {other:?}"),
@@ -326,9 +330,13 @@ impl<C: ModelComponent> Instance for OwnModel<C> {
         for (slot, value) in self.slots(group).into_iter().zip(values) {
             *value = match group.kind {
                 VariableType::Float64 => self.values.real(slot),
+                VariableType::Enumeration if group.bits => {
+                    f64::from_bits(i64::from(self.values.integer(slot)) as u64)
+                }
                 VariableType::Int32 | VariableType::Enumeration => {
                     f64::from(self.values.integer(slot))
                 }
+                VariableType::UInt64 if group.bits => f64::from_bits(self.values.count(slot)),
                 VariableType::UInt64 => self.values.count(slot) as f64,
                 VariableType::Boolean => f64::from(u8::from(self.values.boolean(slot))),
                 other => panic!("no variable is a {other:?}"),
@@ -385,14 +393,20 @@ impl Instance for Scripted {
 
     fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         for (place, value) in self.places(group).into_iter().zip(values) {
-            self.cells[place] = *value;
+            self.cells[place] = match group.bits {
+                true => whole::from_bits(group.kind, *value) as f64,
+                false => *value,
+            };
         }
         Ok(())
     }
 
     fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         for (place, value) in self.places(group).into_iter().zip(values) {
-            *value = self.cells[place];
+            *value = match group.bits {
+                true => whole::to_bits(group.kind, self.cells[place] as i128).unwrap(),
+                false => self.cells[place],
+            };
         }
         Ok(())
     }

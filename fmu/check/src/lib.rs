@@ -53,7 +53,7 @@ use model::Model;
 use octant_fmu_host::archive::{Archive, ArchiveError, ArchiveLimits};
 use octant_fmu_host::description::schema::{self, Breaks, ElementRule, Violation};
 use octant_fmu_host::description::xml::{Element, File};
-use octant_fmu_host::description::{Description, Standard, read};
+use octant_fmu_host::description::{Description, Standard, is_of_fmi_1, of_fmi_1, read};
 use octant_fmu_host::library::platforms;
 use rules::Severity;
 use serde::Serialize;
@@ -159,6 +159,12 @@ pub fn check_archive(mut archive: Archive) -> Result<Checked, ArchiveError> {
     let bytes = archive.read(DESCRIPTION)?;
     let file = archive.file().to_owned();
     let mut binaries = Vec::new();
+    if is_of_fmi_1(&bytes) {
+        let error = of_fmi_1(DESCRIPTION);
+        let place = Place { entry: DESCRIPTION, subject: &error.place, ..Place::default() };
+        findings.add(&rules::DESCRIPTION_READABLE, place, error.found, error.expected);
+        return Ok(Checked { archive, description: None, file, binaries, findings });
+    }
     let description = text(DESCRIPTION, &bytes, &mut findings).and_then(|text| {
         with_description(&text, &mut findings, |model, findings| {
             others(model, &mut archive, findings);

@@ -6,12 +6,13 @@
 use super::Checked;
 use super::finding::Place;
 use super::rules::{
-    LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL, Rule,
+    LOAD_INSTANTIATES, LOAD_NOT_TRIED, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES,
+    LOAD_TOOL, Rule,
 };
 use octant_fmu_host::description::{Causality, Description, Initial, Variable, VariableType};
-use octant_fmu_host::instance::open::{FmuOpenError, open_archive};
+use octant_fmu_host::instance::open::{FmuOpenError, SOLVES, open_archive};
 use octant_fmu_host::instance::{
-    AccessPlan, Instance, InstanceError, InterfaceKind, OpenOptions, StepOutcome,
+    AccessPlan, Instance, InstanceError, InterfaceKind, OpenOptions, StepOutcome, whole,
 };
 
 /// Step of an FMU whose description has none, s.
@@ -31,6 +32,14 @@ pub fn load(checked: &mut Checked, options: &OpenOptions, step: bool) {
     for (kind, name, interface) in kinds {
         let Some(interface) = interface else { continue };
         let place = Place { subject: name, ..Place::default() };
+        if kind == InterfaceKind::ModelExchange && !SOLVES {
+            not_tried(
+                checked,
+                name,
+                "this program was built without the solver for model exchange",
+            );
+            continue;
+        }
         // An FMU that needs its tool can't be judged without it, and might start it unasked.
         if interface.needs_execution_tool {
             let found = match &description.generation_tool[..] {
@@ -48,6 +57,21 @@ pub fn load(checked: &mut Checked, options: &OpenOptions, step: bool) {
             checked.findings.add(failure.rule, place, failure.found, failure.rule.says);
         }
     }
+    if description.scheduled_execution.is_some() {
+        let why = "octant fmu run --interface scheduled-execution runs it";
+        not_tried(checked, "ScheduledExecution", why);
+    }
+}
+
+/// Notes an interface that isn't tried, which is no error of the FMU.
+fn not_tried(checked: &mut Checked, name: &str, why: &str) {
+    let place = Place { subject: name, ..Place::default() };
+    checked.findings.add(
+        &LOAD_NOT_TRIED,
+        place,
+        format!("not tried: {why}"),
+        "an interface that is loaded",
+    );
 }
 
 /// A failed call, and the rule that it breaks.
@@ -138,7 +162,7 @@ fn other_starts(
     };
     let variables: Vec<&Variable> =
         description.variables.iter().filter(is_exact).take(STARTS_MAX).collect();
-    let plan = AccessPlan::new(description, &variables)?;
+    let plan = AccessPlan::exactly(description, &variables)?;
     // Variables that can't be read don't count as different; another rule reports a missing
     // function.
     let mut values = vec![None; plan.elements];
@@ -162,8 +186,10 @@ fn other_starts(
             let start = text.and_then(|text| start(variable.kind, text));
             let (Some(start), Some(value)) = (start, value) else { continue };
             // A start value may be NaN.
-            if value.to_bits() != start.to_bits() && *value != start {
-                let name = &variable.name;
+            let alike = !whole::is_wide(variable.kind) && *value == start;
+            if value.to_bits() != start.to_bits() && !alike {
+                let (name, kind) = (&variable.name, variable.kind);
+                let [value, start] = [*value, start].map(|number| told(kind, number));
                 return Ok(Some(format!("{name:?} is {value}, its start value is {start}")));
             }
         }
@@ -171,11 +197,20 @@ fn other_starts(
     Ok(None)
 }
 
+/// Returns a value as it is exchanged in words.
+fn told(kind: VariableType, value: f64) -> String {
+    match whole::is_wide(kind) {
+        true => whole::from_bits(kind, value).to_string(),
+        false => value.to_string(),
+    }
+}
+
 /// Reads a start value as f64, the form in which numbers are exchanged.
 fn start(kind: VariableType, text: &str) -> Option<f64> {
     use octant_fmu_host::description::xml::{boolean, real};
     match kind {
         VariableType::Boolean => boolean(text).map(f64::from),
+        kind if whole::is_wide(kind) => whole::to_bits(kind, whole::parse(text)?),
         VariableType::Float32 => text.trim().parse::<f32>().ok().map(f64::from),
         _ => real(text),
     }

@@ -330,6 +330,8 @@ rules! {
 
     LOAD_TOOL "load.tool" Note "3.3.1, 4.3.1" "2.4.2"
         "It runs without the tool that made it; else it is loaded only with --allow-tool.";
+    LOAD_NOT_TRIED "load.not-tried" Note "3.3.1, 4.3.1" "2.4.2"
+        "Every interface is loaded; one that isn't says nothing about the FMU.";
     LOAD_OPENS "load.opens" Error "2.1.4, 2.3" "2.5.1"
         "The library for this machine can be loaded, and says that it is of the standard.";
     LOAD_SURVIVES "load.survives" Error "2.1" "2.2"

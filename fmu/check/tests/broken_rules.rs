@@ -51,6 +51,21 @@ fn good_descriptions_have_no_finding() {
 }
 
 #[test]
+fn an_fmu_of_fmi_1_has_one_finding() {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    zip.start_file("modelDescription.xml", SimpleFileOptions::default()).expect("starts");
+    // The encoding would be another finding.
+    zip.write_all(b"<fmiModelDescription fmiVersion=\"1.0\" modelName=\"\xb0\"/>").expect("writes");
+    let bytes = zip.finish().expect("finishes").into_inner();
+    let archive = Archive::survey_bytes("old.fmu", bytes, ArchiveLimits::DEFAULT).expect("opens");
+    let report = check_archive(archive).expect("has a description").report();
+    let found: Vec<String> =
+        report.findings.iter().map(|one| format!("{}: {}", one.rule.id, one.found)).collect();
+    let expected = "description.readable: an FMU of FMI 1.0, which this program doesn't run";
+    assert_eq!(found, [expected]);
+}
+
+#[test]
 fn a_change_that_breaks_one_rule_is_found_by_this_rule_alone() {
     let mut wrong = Vec::new();
     for (rule, good, edits, says) in cases() {

@@ -3,6 +3,7 @@
 #[path = "common/foreign.rs"]
 mod foreign;
 
+mod events;
 #[cfg(feature = "model-exchange")]
 mod exchange;
 mod instance;

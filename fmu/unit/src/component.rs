@@ -40,6 +40,15 @@ pub trait ModelComponent: Clone + Send + Sync + Sized + 'static {
     /// If an input can't be used; the component and its outputs are as before.
     fn step(&mut self, values: &mut CellValues) -> Result<(), Self::Error>;
 
+    /// Makes a further sample period of the same communication step. Outputs that are increments become
+    /// those since the beginning of the communication step.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    fn step_further(&mut self, values: &mut CellValues) -> Result<(), Self::Error> {
+        self.step(values)
+    }
+
     /// Ends the simulation: updates the outputs that change only at the end.
     fn terminate(&mut self, values: &mut CellValues) {
         let _ = values;

@@ -316,6 +316,9 @@ pub struct Model {
     /// Smallest and largest number of sample periods in a communication step; or
     /// [`Model::ANY_STEP`].
     pub periods_per_step: (u64, u64),
+    /// True if the outputs of a communication step of several periods are sums over all of them, so that
+    /// the step doesn't end early at an event within.
+    pub sums_periods: bool,
 }
 
 impl Model {

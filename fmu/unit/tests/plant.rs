@@ -78,6 +78,42 @@ fn the_reference_comes_once_a_second_and_truth_can_be_left_out() {
 }
 
 #[test]
+fn outputs_of_a_longer_communication_step_are_sums_over_its_periods() {
+    let (mut single, mut one) = made(CellValues::new(&MODEL));
+    let (mut several, mut sums) = made(CellValues::new(&MODEL));
+    let mut references = 0;
+    // Steps of three periods, in which the reference comes in any of them.
+    for step in 1..=400u64 {
+        let (mut theta, mut velocity, mut kind, mut age) = ([0.0; 3], [0.0; 3], 0, 0.0);
+        for period in 0..3 {
+            single.step(&mut one).unwrap();
+            for axis in 0..3 {
+                theta[axis] += one.real(at("gyro.delta_theta") + axis);
+                velocity[axis] += one.real(at("accelerometer.delta_velocity") + axis);
+            }
+            age += 5e6;
+            if one.integer(at("reference.kind")) != 0 {
+                (kind, age) = (one.integer(at("reference.kind")), one.real(at("reference.age_ns")));
+                references += 1;
+            }
+            match period {
+                0 => several.step(&mut sums).unwrap(),
+                _ => several.step_further(&mut sums).unwrap(),
+            }
+        }
+        assert_eq!(sums.reals(at("gyro.delta_theta")), theta);
+        assert_eq!(sums.reals(at("accelerometer.delta_velocity")), velocity);
+        assert_eq!(sums.count(at("imu.sequence")), 3 * step);
+        assert_eq!(sums.count(at("imu.device_time_ns")), 15_000_000 * step);
+        assert_eq!(sums.integer(at("reference.kind")), kind);
+        if kind != 0 {
+            assert_eq!(sums.real(at("reference.age_ns")), age);
+        }
+    }
+    assert_eq!(references, 6);
+}
+
+#[test]
 fn a_fault_by_hand_is_held_or_lasts_its_duration() {
     let mut values = CellValues::new(&MODEL);
     for place in [1, 2] {

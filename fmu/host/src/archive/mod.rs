@@ -148,7 +148,8 @@ impl Archive {
         Ok(Self { file, limits, entries, problems, oddities, contents: Contents::Zip(zip) })
     }
 
-    /// Lists the files below a folder. Links aren't followed.
+    /// Lists the files below a folder. A link is a file where it leads to one below the folder, and a
+    /// problem else.
     fn survey_folder(
         path: &Path,
         file: String,
@@ -169,11 +170,13 @@ impl Archive {
                     folders.push((item.path(), name + "/"));
                 } else if metadata.is_file() {
                     entries.push(ArchiveEntry { name, stated_bytes: metadata.len() });
+                } else if let Some(stated_bytes) = linked_within(path, &item.path()) {
+                    entries.push(ArchiveEntry { name, stated_bytes });
                 } else {
                     problems.push(NameProblem {
                         name,
                         found: "is a link or a device".into(),
-                        expected: "a file or a folder",
+                        expected: "a file, a folder, or a link to a file of the FMU's folder",
                     });
                 }
                 if entries.len() + folders.len() > limits.entries {
@@ -322,6 +325,16 @@ impl Archive {
         }
         Ok(Unpacked { path: temporary.path().to_owned(), _temporary: Some(temporary) })
     }
+}
+
+/// Size of the file to which a link leads, bytes; `None` if it leads to none below the folder.
+fn linked_within(folder: &Path, link: &Path) -> Option<u64> {
+    let target = fs::canonicalize(link).ok()?;
+    if !target.starts_with(fs::canonicalize(folder).ok()?) {
+        return None;
+    }
+    let metadata = fs::metadata(&target).ok()?;
+    metadata.is_file().then(|| metadata.len())
 }
 
 #[cfg(test)]

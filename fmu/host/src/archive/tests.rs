@@ -271,6 +271,10 @@ fn programs_stay_programs_and_links_in_folders_are_not_followed() {
         fs::metadata(unpacked.path().join(name)).expect("is there").permissions().mode() & 0o111
     };
     assert_eq!((mode("resources/tool"), mode("resources/data")), (0o111, 0));
+    // A link within the folder, as unpacked libraries have them.
+    std::os::unix::fs::symlink("data", unpacked.path().join("resources/inside")).expect("links");
+    let mut archive = Archive::open(unpacked.path()).expect("has a link to a file of its own");
+    assert_eq!(archive.read("resources/inside").expect("is read"), b"");
     std::os::unix::fs::symlink("/etc/passwd", unpacked.path().join("resources/link"))
         .expect("links");
     let error = Archive::open(unpacked.path()).expect_err("has a link").to_string();

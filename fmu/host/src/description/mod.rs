@@ -27,8 +27,8 @@ mod variable;
 pub mod xml;
 pub mod xml_limits;
 
-pub use read::{read, read_bytes};
-pub use text::decode;
+pub use read::{of_fmi_1, read, read_bytes};
+pub use text::{decode, is_of_fmi_1};
 pub use variable::{
     Alias, ArrayDimension, Causality, ClockProperties, Initial, IntervalVariability, Variability,
     Variable, VariableType,

@@ -14,11 +14,26 @@ use std::collections::BTreeSet;
 /// # Errors
 /// If the encoding is unknown; otherwise as [`read`].
 pub fn read_bytes(bytes: &[u8], file: &str) -> Result<Description, DescriptionError> {
+    if text::is_of_fmi_1(bytes) {
+        return Err(of_fmi_1(file));
+    }
     let (text, mut tolerated) = text::decode(bytes, file)?;
     let mut description = read(&text, file)?;
     tolerated.append(&mut description.tolerated);
     description.tolerated = tolerated;
     Ok(description)
+}
+
+/// Error for an FMU of FMI 1.0, before anything else is said of it.
+#[must_use]
+pub fn of_fmi_1(file: &str) -> DescriptionError {
+    DescriptionError {
+        file: file.to_owned(),
+        line: None,
+        place: "fmiModelDescription fmiVersion".to_owned(),
+        found: "an FMU of FMI 1.0, which this program doesn't run".to_owned(),
+        expected: "FMI 2.0 or 3.0: most tools export the model anew in one of them".to_owned(),
+    }
 }
 
 /// Reads a model description of FMI 2.0 or FMI 3.0; `file` is its name in messages.

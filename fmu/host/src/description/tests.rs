@@ -397,3 +397,27 @@ fn numbers_are_read_as_vendors_write_them() {
         );
     }
 }
+
+#[test]
+fn fmi_1_is_said_before_anything_else() {
+    let head = b"<?xml version='1.0' encoding='EBCDIC'?>\n<fmiModelDescription modelName=\"\xb0\"\n fmiVersion = '1.0'>";
+    let error = super::read_bytes(head, "m.xml").expect_err("is of FMI 1.0").to_string();
+    assert!(error.contains("FMI 1.0") && error.contains("export the model anew"), "{error}");
+    assert!(!error.contains("EBCDIC"), "{error}");
+    for other in ["fmiVersion=\"2.0\"", "fmiVersion=\"3.1\"", "version=\"1.0\""] {
+        let text = format!("<fmiModelDescription {other}>");
+        assert!(!super::is_of_fmi_1(text.as_bytes()), "{other}");
+    }
+    let wide: Vec<u8> = "<fmiModelDescription fmiVersion=\"1.0\">"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    assert!(super::is_of_fmi_1(&wide));
+}
+
+#[test]
+fn a_minor_version_that_is_newer_is_noted() {
+    let text = fmi2("", "", "", "").replace("fmiVersion=\"2.0\"", "fmiVersion=\"2.0.4\"");
+    let read = get(&text);
+    assert!(read.tolerated.iter().any(|one| one.contains("\"2.0.4\" is read as 2.0")), "{read:?}");
+}

@@ -60,6 +60,19 @@ pub fn decode(bytes: &[u8], file: &str) -> Result<(String, Vec<String>), Descrip
         .ok_or_else(|| fail(format!("bytes that aren't {label}"), "what is declared"))
 }
 
+/// Returns whether bytes are a description of FMI 1.0, whatever their encoding.
+#[must_use]
+pub fn is_of_fmi_1(bytes: &[u8]) -> bool {
+    let start = &bytes[..bytes.len().min(16 * 1024)];
+    // Zeros are between the letters of UTF-16.
+    let text: String = start.iter().filter(|byte| **byte != 0).map(|b| char::from(*b)).collect();
+    let Some((_, rest)) = text.split_once("<fmiModelDescription") else { return false };
+    let tag = rest.split('>').next().unwrap_or_default();
+    let Some((_, value)) = tag.split_once("fmiVersion") else { return false };
+    let value = value.trim_start().trim_start_matches('=').trim_start();
+    value.trim_start_matches(['"', '\'']).trim_start().starts_with("1.")
+}
+
 /// Encoding in the XML declaration. All encodings in which a declaration is legible are supersets
 /// of ASCII; the others have a mark.
 fn declared(bytes: &[u8]) -> Option<String> {

@@ -187,6 +187,12 @@ impl Base {
         Ok(bytes)
     }
 
+    /// Adds a warning of this program to the messages of the FMU.
+    #[cold]
+    pub(crate) fn note(&self, text: &str) {
+        self.log.note(text);
+    }
+
     /// Messages that the FMU logged.
     pub(crate) fn messages(&self) -> Vec<FmuMessage> {
         self.log.drain(&self.description)

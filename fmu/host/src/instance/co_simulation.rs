@@ -47,6 +47,10 @@ pub(super) struct CoSimulation<U: Steps> {
     own: Own,
     kept: States<Own>,
     held: Held,
+    /// True if a step may end at a time event: the FMU makes steps of any length.
+    splits: bool,
+    /// True once it was said that a time event is handled late.
+    told_late: bool,
 }
 
 /// Part of a stored state beside the FMU's own.
@@ -55,6 +59,8 @@ struct Own {
     phase: Phase,
     time_s: f64,
     clocks: Clocks,
+    /// Time of the next event that the FMU has announced, s.
+    next_event_s: Option<f64>,
 }
 
 impl<U: Steps> CoSimulation<U> {
@@ -64,8 +70,10 @@ impl<U: Steps> CoSimulation<U> {
         } else {
             Clocks::default()
         };
-        let own = Own { phase: Phase::New, time_s: 0.0, clocks };
-        Self { unit, own, kept: States::new(), held: Held::default() }
+        let own = Own { phase: Phase::New, time_s: 0.0, clocks, next_event_s: None };
+        let interface = &unit.base().description.co_simulation;
+        let splits = interface.as_ref().is_some_and(|interface| interface.variable_step);
+        Self { unit, own, kept: States::new(), held: Held::default(), splits, told_late: false }
     }
 
     /// Updates the discrete states until the FMU needs no more updates, and returns to step mode.
@@ -74,6 +82,7 @@ impl<U: Steps> CoSimulation<U> {
         for _ in 0..REPEATS_MAX {
             let update = self.unit.update_discrete_states()?;
             terminate |= update.terminate;
+            self.own.next_event_s = update.next_event_time_s;
             if !self.own.clocks.is_empty() {
                 self.own.clocks.ask(&mut self.unit, self.own.time_s)?;
             }
@@ -89,8 +98,9 @@ impl<U: Steps> CoSimulation<U> {
         })
     }
 
-    /// Makes a step that stops where clocks are due, and activates them.
-    fn step_with_clocks(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
+    /// Makes a step that stops where clocks and time events are due. It activates the clocks, and
+    /// handles the events: those within a step at its end, where the FMU can't make a shorter one.
+    fn step_with_events(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         let end_s = time_s + step_s;
         let close_s = 1e-9 * step_s;
         let mut stepped =
@@ -98,13 +108,17 @@ impl<U: Steps> CoSimulation<U> {
         let mut ticks = 0;
         loop {
             self.own.time_s = stepped.time_s;
-            let next_s = self.own.clocks.next_s().unwrap_or(f64::INFINITY);
-            if next_s <= stepped.time_s + close_s {
+            let tick_s = self.own.clocks.next_s().unwrap_or(f64::INFINITY);
+            let event_s = self.own.next_event_s.unwrap_or(f64::INFINITY);
+            if tick_s.min(event_s) <= stepped.time_s + close_s {
                 ticks += 1;
                 if ticks > REPEATS_MAX {
                     return Err(InstanceError::Endless {
                         fmu: self.name().into(),
-                        what: format!("{REPEATS_MAX} ticks of clocks at {} s", stepped.time_s),
+                        what: format!(
+                            "{REPEATS_MAX} ticks of clocks and time events at {} s",
+                            stepped.time_s
+                        ),
                     });
                 }
                 self.enter_event_mode()?;
@@ -118,8 +132,12 @@ impl<U: Steps> CoSimulation<U> {
                 return Ok(Stepped { time_s: end_s, ..stepped });
             }
             ticks = 0;
+            let next_s = if self.splits { tick_s.min(event_s) } else { tick_s };
             let target_s = if next_s < end_s - close_s { next_s } else { end_s };
-            stepped = self.unit.do_step(stepped.time_s, target_s - stepped.time_s)?;
+            // The nominal length of a whole step: a difference of times would be rounded.
+            let whole = stepped.time_s == time_s && target_s == end_s;
+            let length_s = if whole { step_s } else { target_s - stepped.time_s };
+            stepped = self.unit.do_step(stepped.time_s, length_s)?;
             if stepped.outcome == StepOutcome::Done {
                 stepped.time_s = target_s;
             }
@@ -133,6 +151,20 @@ impl<U: Steps> CoSimulation<U> {
                 return Ok(stepped);
             }
         }
+    }
+
+    /// Says once that a time event is handled after its time.
+    fn tell_late(&mut self) {
+        let Own { next_event_s, time_s, .. } = self.own;
+        let Some(event_s) = next_event_s.filter(|_| !self.told_late) else { return };
+        if event_s >= time_s - 1e-9 * (1.0 + time_s.abs()) {
+            return;
+        }
+        self.told_late = true;
+        self.unit.base().note(&format!(
+            "the time event at {event_s} s is handled at {time_s} s, the end of the step: the FMU can't vary its step \
+             (canHandleVariableCommunicationStepSize)"
+        ));
     }
 
     /// Brings the FMU to a mode in which a group can be set, sets it, and leaves configuration mode
@@ -190,8 +222,13 @@ impl<U: Steps> Instance for CoSimulation<U> {
     }
 
     fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
-        self.held.forget();
-        self.with_access(group, |unit| unit.set(group, values))
+        let done = self.with_access(group, |unit| unit.set(group, values));
+        if done.is_ok() && Held::can_be(group, self.unit.has_event_mode()) {
+            self.held.learn(group, values);
+        } else {
+            self.held.forget();
+        }
+        done
     }
 
     fn set_in_exchange(
@@ -234,10 +271,10 @@ impl<U: Steps> Instance for CoSimulation<U> {
                 terminate: true,
             });
         }
-        if self.own.clocks.is_empty() {
+        if self.own.clocks.is_empty() && self.own.next_event_s.is_none() {
             return self.unit.do_step(time_s, step_s);
         }
-        self.step_with_clocks(time_s, step_s)
+        self.step_with_events(time_s, step_s)
     }
 
     fn handle_events(&mut self) -> Result<bool, InstanceError> {
@@ -258,6 +295,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
                 "it has none, or it isn't used",
             ));
         }
+        self.tell_late();
         self.unit.enter_event_mode()?;
         self.own.phase = Phase::Event;
         Ok(())
@@ -266,6 +304,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
     fn update_discrete_states(&mut self) -> Result<Update, InstanceError> {
         self.expect("an update of the discrete states", &[Phase::Event])?;
         let update = self.unit.update_discrete_states()?;
+        self.own.next_event_s = update.next_event_time_s;
         if !self.own.clocks.is_empty() {
             self.own.clocks.ask(&mut self.unit, self.own.time_s)?;
         }
@@ -293,6 +332,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
         self.held.forget();
         self.unit.reset()?;
         self.own.phase = Phase::New;
+        self.own.next_event_s = None;
         Ok(())
     }
 }

@@ -13,7 +13,9 @@ macro_rules! functions_of_unit {
         }
 
         fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
-            self.unit.get(group, values)
+            self.unit.get(group, values).map_err(|error| {
+                crate::instance::group::of_variables(error, &self.unit.base().description, group)
+            })
         }
 
         fn set_strings(

@@ -33,6 +33,8 @@ pub(crate) struct Component {
     time_limit: Duration,
     /// True if states may be restored: then the FMU is told to keep the data needed for it.
     pub(crate) restorable: bool,
+    /// True once it was said that the FMU's time contradicts the step.
+    told_time: bool,
     scratch: Scratch2,
 }
 
@@ -96,6 +98,7 @@ impl Component {
             instance,
             time_limit: setup.time_limit,
             restorable: setup.interface.state,
+            told_time: false,
             scratch: Scratch2::default(),
         })
     }
@@ -130,7 +133,7 @@ impl Component {
 
     /// Reads the result of a discarded step: the time reached, and whether the FMU requests the
     /// end.
-    fn discarded(&mut self, time_s: f64) -> Result<Stepped, InstanceError> {
+    fn discarded(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         let mut reached_s = time_s;
         let mut terminated = fmi2::FALSE;
         // Both functions are optional in practice: without them the FMU is assumed to have made no
@@ -138,7 +141,17 @@ impl Component {
         if self.functions.fmi2GetRealStatus.is_some() {
             let kind = fmi2::LAST_SUCCESSFUL_TIME;
             let answer = ask!(self.fmi2GetRealStatus(kind, &mut reached_s))?;
-            if answer != Answer::Fine || !reached_s.is_finite() {
+            let end_s = time_s + step_s;
+            if answer != Answer::Fine {
+                reached_s = time_s;
+            } else if !(reached_s >= time_s && reached_s <= end_s) {
+                if !self.told_time {
+                    self.told_time = true;
+                    self.base.note(&format!(
+                        "fmi2GetRealStatus: lastSuccessfulTime is {reached_s} s after a discarded step from {time_s} s \
+                         to {end_s} s"
+                    ));
+                }
                 reached_s = time_s;
             }
         }
@@ -288,7 +301,7 @@ impl Steps for Component {
             answer = self.wait()?;
         }
         if answer == Answer::Discard {
-            return self.discarded(time_s);
+            return self.discarded(time_s, step_s);
         }
         Ok(Stepped {
             time_s: time_s + step_s,

@@ -32,6 +32,8 @@ pub(crate) struct Component {
     event_mode: bool,
     /// True if states may be restored: then the FMU is told to keep the data needed for it.
     pub(crate) restorable: bool,
+    /// True once it was said that the FMU's time contradicts the step.
+    told_time: bool,
     scratch: Scratch3,
 }
 
@@ -144,6 +146,7 @@ impl Component {
             instance,
             event_mode,
             restorable: setup.interface.state,
+            told_time: false,
             scratch: Scratch3::default(),
         })
     }
@@ -382,6 +385,20 @@ impl Steps for Component {
             Answer::Discard => StepOutcome::Discarded,
             Answer::Pending => return Err(self.base.failed("fmi3DoStep", "pending")),
         };
+        let end_s = time_s + step_s;
+        let close_s = 1e-9 * step_s + f64::EPSILON * end_s.abs();
+        let from_s = if outcome == StepOutcome::Done { end_s } else { time_s };
+        if !(reached_s >= from_s - close_s && reached_s <= end_s + close_s) && !self.told_time {
+            self.told_time = true;
+            self.base.note(&format!(
+                "fmi3DoStep: lastSuccessfulTime is {reached_s} s after {} from {time_s} s to {end_s} s",
+                match outcome {
+                    StepOutcome::Done => "a whole step",
+                    StepOutcome::Early => "an early return from a step",
+                    StepOutcome::Discarded => "a discarded step",
+                }
+            ));
+        }
         let time_s = match outcome {
             StepOutcome::Done => time_s + step_s,
             // A reported time outside of the step means that no part of it was made.

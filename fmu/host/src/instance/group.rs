@@ -6,6 +6,7 @@ use super::super::description::{
 use super::call::Base;
 use super::error::InstanceError;
 use super::number::Number;
+use super::whole;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -24,7 +25,7 @@ pub enum Access {
 /// Variables of one type that are set or got together.
 ///
 /// Numbers of every type, Booleans, enumerations and clocks are exchanged as f64 (whole numbers
-/// exact up to 2⁵³); text and bytes by separate functions.
+/// exact up to 2⁵³, or as their bits); text and bytes by separate functions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariableGroup {
     /// Type of the variables.
@@ -35,6 +36,8 @@ pub struct VariableGroup {
     pub references: Vec<u32>,
     /// Number of elements of all of them together.
     pub elements: usize,
+    /// True if numbers of a [wide](super::whole) type are exchanged as their bits.
+    pub bits: bool,
 }
 
 impl VariableGroup {
@@ -48,7 +51,15 @@ impl VariableGroup {
             access: access(description, variable),
             references: vec![variable.reference],
             elements: elements(description, variable)?,
+            bits: false,
         })
+    }
+
+    /// Exchanges whole numbers of 64 bits as their bits: see [`super::whole`].
+    #[must_use]
+    pub fn exactly(mut self) -> Self {
+        self.bits = whole::is_wide(self.kind);
+        self
     }
 }
 
@@ -70,6 +81,25 @@ impl AccessPlan {
     /// # Errors
     /// If a variable is a String or a Binary, or the number of its elements is unknown.
     pub fn new(description: &Description, variables: &[&Variable]) -> Result<Self, InstanceError> {
+        Self::of(description, variables, |group| group)
+    }
+
+    /// Groups as [`Self::new`], and exchanges whole numbers of 64 bits as their bits.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn exactly(
+        description: &Description,
+        variables: &[&Variable],
+    ) -> Result<Self, InstanceError> {
+        Self::of(description, variables, VariableGroup::exactly)
+    }
+
+    fn of(
+        description: &Description,
+        variables: &[&Variable],
+        form: fn(VariableGroup) -> VariableGroup,
+    ) -> Result<Self, InstanceError> {
         let mut groups: Vec<VariableGroup> = Vec::new();
         let mut within = Vec::with_capacity(variables.len());
         for variable in variables {
@@ -80,7 +110,7 @@ impl AccessPlan {
                     format!("it is a {:?}", variable.kind),
                 ));
             }
-            let one = VariableGroup::of(description, variable)?;
+            let one = form(VariableGroup::of(description, variable)?);
             let place = groups
                 .iter()
                 .position(|group| group.kind == one.kind && group.access == one.access)
@@ -208,6 +238,41 @@ pub(super) fn expect_scalars(
     }
 }
 
+/// Names the variables of a group that an FMU refused to give: after an error it can't be asked for them
+/// one by one.
+#[cold]
+pub(crate) fn of_variables(
+    error: InstanceError,
+    description: &Description,
+    group: &VariableGroup,
+) -> InstanceError {
+    const NAMED: usize = 3;
+    let InstanceError::Failed { fmu, function, status, said } = error else { return error };
+    let all = &group.references;
+    let names: Vec<String> = all
+        .iter()
+        .take(NAMED)
+        .map(|reference| {
+            let one = VariableGroup { references: vec![*reference], elements: 1, ..group.clone() };
+            variable_name(description, &one)
+        })
+        .collect();
+    let more = match all.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" or one of {more} more"),
+    };
+    let status = format!("{status} for {}{more}", names.join(", "));
+    InstanceError::Failed { fmu, function, status, said }
+}
+
+/// Name of the first variable of a group.
+fn variable_name(description: &Description, group: &VariableGroup) -> String {
+    let named = description.variables.iter().find(|variable| {
+        Some(&variable.reference) == group.references.first() && variable.kind == group.kind
+    });
+    named.map_or_else(|| element_name(description, group, 0), |variable| variable.name.clone())
+}
+
 /// Converts numbers of the FMU to f64.
 pub(super) fn numbers_to_f64<T: Number>(
     base: &Base,
@@ -216,7 +281,8 @@ pub(super) fn numbers_to_f64<T: Number>(
     values: &mut [f64],
 ) -> Result<(), InstanceError> {
     for (i, (number, value)) in numbers.iter().zip(values).enumerate() {
-        *value = number.to_f64().ok_or_else(|| misfit(base, group, i, number.to_string()))?;
+        let found = if group.bits { Some(number.to_bits()) } else { number.to_f64() };
+        *value = found.ok_or_else(|| misfit(base, group, i, number.to_string()))?;
     }
     Ok(())
 }
@@ -230,9 +296,19 @@ pub(super) fn numbers_from_f64<T: Number>(
 ) -> Result<(), InstanceError> {
     numbers.resize_with(values.len(), T::default);
     for (i, (number, value)) in numbers.iter_mut().zip(values).enumerate() {
-        *number = T::from_f64(*value).ok_or_else(|| misfit(base, group, i, value.to_string()))?;
+        let found = if group.bits { T::from_bits(*value) } else { T::from_f64(*value) };
+        *number = found.ok_or_else(|| misfit(base, group, i, told(group, *value)))?;
     }
     Ok(())
+}
+
+/// Returns a number of a group in words.
+#[cold]
+fn told(group: &VariableGroup, value: f64) -> String {
+    if group.bits {
+        return whole::from_bits(group.kind, value).to_string();
+    }
+    value.to_string()
 }
 
 #[cold]

@@ -25,6 +25,17 @@ pub struct FmuMessage {
     pub text: String,
 }
 
+/// Category of warnings of this program.
+const HOST: &str = "octant";
+
+impl FmuMessage {
+    /// Returns whether it is a warning of this program about the FMU.
+    #[must_use]
+    pub fn is_of_host(&self) -> bool {
+        self.category == HOST
+    }
+}
+
 impl fmt::Display for FmuMessage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "[{}] {}: {}", self.status, self.category, self.text)
@@ -75,7 +86,7 @@ impl Log {
         if dropped > 0 {
             messages.push(FmuMessage {
                 status: "warning".into(),
-                category: "octant".into(),
+                category: HOST.into(),
                 text: format!("{dropped} more messages were dropped"),
             });
         }
@@ -85,10 +96,16 @@ impl Log {
     /// Last message that indicates a failure, in one line after a colon; empty if there is none.
     pub(super) fn last(&self, description: &Description) -> String {
         let said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
-        let last = said.messages.iter().rev().find(|message| message.status != "ok");
+        let is_failure = |message: &&FmuMessage| message.status != "ok" && !message.is_of_host();
+        let last = said.messages.iter().rev().find(is_failure);
         last.map_or(String::new(), |message| {
             format!(": {}", with_names(message.text.trim(), description))
         })
+    }
+
+    /// Adds a warning of this program.
+    pub(super) fn note(&self, text: &str) {
+        self.push(fmi2::WARNING, HOST.into(), text.replace('#', "##"));
     }
 
     fn push(&self, status: i32, category: String, text: String) {

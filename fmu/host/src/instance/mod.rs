@@ -10,6 +10,7 @@
 //! | [`error`] | errors of a running FMU |
 //! | `message` | messages that an FMU logs |
 //! | `call` | one call of a function: its name, its status, the meaning of the status |
+//! | [`whole`] | whole numbers of 64 bits as their bits |
 //! | `number` | conversion between f64 and the number types of FMI, checked |
 //! | `scratch` | buffers through which numbers of other types than f64 are got and set |
 //! | `unit` | functions of both standards in one form |
@@ -41,6 +42,7 @@ mod scratch;
 pub(super) mod setup;
 pub(super) mod states;
 pub(super) mod unit;
+pub mod whole;
 
 pub use clock_update::ClockNews;
 pub use error::InstanceError;

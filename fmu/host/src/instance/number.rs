@@ -7,6 +7,14 @@ pub(super) trait Number: Copy + Default + std::fmt::Display {
     fn from_f64(value: f64) -> Option<Self>;
     /// Converts the number to f64, if f64 has it.
     fn to_f64(self) -> Option<f64>;
+    /// Takes the bits of a 64-bit whole number, if the type has it: see [`super::whole`].
+    fn from_bits(bits: f64) -> Option<Self> {
+        Self::from_f64(bits)
+    }
+    /// Gives the bits of a 64-bit whole number.
+    fn to_bits(self) -> f64 {
+        self.to_f64().unwrap_or(f64::NAN)
+    }
 }
 
 /// Limit below which f64 has every whole number.
@@ -35,6 +43,18 @@ macro_rules! whole {
                     return Some(value);
                 }
                 (value as i128 == self as i128).then_some(value)
+            }
+            #[inline]
+            fn from_bits(bits: f64) -> Option<Self> {
+                let whole = bits.to_bits() as i64;
+                if size_of::<$kind>() == 8 {
+                    return Some(whole as $kind);
+                }
+                <$kind>::try_from(whole).ok()
+            }
+            #[inline]
+            fn to_bits(self) -> f64 {
+                f64::from_bits(self as i64 as u64)
             }
         }
     )*};
@@ -111,6 +131,18 @@ mod tests {
         assert_eq!((1u64 << 53).to_f64(), Some(9_007_199_254_740_992.0));
         assert_eq!(u64::MAX.to_f64(), None);
         assert_eq!(i64::MIN.to_f64(), Some(-9_223_372_036_854_775_808.0));
+    }
+
+    #[test]
+    fn bits_are_those_of_64_bits() {
+        for value in [i64::MIN, -1, 0, (1 << 53) + 1, i64::MAX] {
+            assert_eq!(i64::from_bits(Number::to_bits(value)), Some(value));
+            let unsigned = value as u64;
+            assert_eq!(u64::from_bits(Number::to_bits(unsigned)), Some(unsigned));
+        }
+        assert_eq!(<i32 as Number>::from_bits(Number::to_bits(-7i64)), Some(-7));
+        assert_eq!(<i32 as Number>::from_bits(Number::to_bits(1i64 << 31)), None);
+        assert_eq!(<i64 as Number>::from_bits(Number::to_bits(-7i32)), Some(-7));
     }
 
     #[test]

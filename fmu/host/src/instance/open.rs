@@ -43,6 +43,9 @@ impl Failing for FmuOpenError {
     }
 }
 
+/// True if this program has the solver for model exchange.
+pub const SOLVES: bool = cfg!(feature = "model-exchange");
+
 /// Opens an FMU, or a folder with its unpacked content.
 ///
 /// # Errors
@@ -125,8 +128,14 @@ pub(crate) fn open_here(
         return Err(InstanceError::unsupported(
             name,
             "be run",
-            "it has model exchange and no co-simulation, and this program was built without the solver for that, \
-             expected one built with its default features, or with --features octant/model-exchange",
+            format!(
+                "{}this program was built without the solver for model exchange, expected one built with its default \
+                 features, or with --features octant/model-exchange",
+                match description.co_simulation {
+                    Some(_) => "",
+                    None => "it has model exchange and no co-simulation, and ",
+                }
+            ),
         ));
     }
     if interface.needs_execution_tool && !options.allow_tool {
@@ -197,10 +206,33 @@ pub(crate) fn open_here(
             &setup,
             octant_fmi::fmi2::CO_SIMULATION,
         )?)),
-        Standard::Fmi3 => {
-            Box::new(CoSimulation::new(fmi3::Component::new(library, &setup, purpose)?))
-        }
+        Standard::Fmi3 => Box::new(CoSimulation::new(stepped(library, setup, purpose, clocks)?)),
     })
+}
+
+/// Makes an instance of FMI 3.0 for co-simulation. An FMU that declares event mode, and makes no
+/// instance with it, is run without, unless it has clocks.
+fn stepped(
+    library: Arc<Library>,
+    mut setup: Setup,
+    purpose: fmi3::Use,
+    clocks: bool,
+) -> Result<fmi3::Component, InstanceError> {
+    let made = fmi3::Component::new(Arc::clone(&library), &setup, purpose);
+    let refused = match made {
+        Err(InstanceError::Failed { said, .. })
+            if setup.event_mode && setup.interface.event_mode && !clocks =>
+        {
+            said
+        }
+        made => return made,
+    };
+    setup.event_mode = false;
+    let made = fmi3::Component::new(library, &setup, purpose)?;
+    made.base.note(&format!(
+        "it declares event mode (hasEventMode), and makes no instance with it{refused}; it is run without event mode"
+    ));
+    Ok(made)
 }
 
 /// Makes an instance by model exchange, with Octant's solver.

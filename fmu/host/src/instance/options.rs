@@ -61,8 +61,9 @@ impl OpenOptions {
     pub fn limits_help() -> String {
         let Self { time_limit, start_limit, .. } = Self::default();
         format!(
-            "Longest wall time of a call in a process of its own, and of loading with instantiation; what takes longer \
-             counts as hung. By default {} s, and {} s for loading and initializing",
+            "Longest time of a call in a process of its own, and of loading with instantiation, without the time in which \
+             the process waits for a processor; what takes longer counts as hung. By default {} s, and {} s for loading \
+             and initializing",
             time_limit.as_secs(),
             start_limit.as_secs()
         )

@@ -43,6 +43,7 @@ pub fn serve() -> Result<(), FmuServeError> {
         .map_err(|error| FmuServeError::Watch { error: error.into() })?;
     // The mapping stays to the end of the process: the FMU's last calls are marked there.
     let shared: &'static Shared = Box::leak(Box::new(shared));
+    shared.word(Word::Process).store(u64::from(std::process::id()), Ordering::Relaxed);
     watch_parent(&socket)?;
     Host { socket, shared, spin: Spin::new(), plans: Vec::new(), messages: Vec::new() }
         .run()

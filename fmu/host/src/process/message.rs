@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 
 /// Version of the protocol: both are the same program, otherwise they refuse.
-pub(super) const VERSION: &str = concat!("octant ", env!("CARGO_PKG_VERSION"), " fmu 2");
+pub(super) const VERSION: &str = concat!("octant ", env!("CARGO_PKG_VERSION"), " fmu 3");
 
 /// Largest length of a message, bytes.
 const LENGTH_MAX: u32 = 1 << 31;

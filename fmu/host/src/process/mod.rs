@@ -6,6 +6,7 @@
 //! | `message` | messages between the two processes, over a socket |
 //! | `shared` | memory of both processes, for exchanges |
 //! | `watch` | the child process: its time limit, and its end |
+//! | `patience` | time that an answer may take |
 //! | `remote` | the FMU seen from this process |
 //! | [`guard`] | the process between both: `octant fmu host` |
 //! | [`host`] | the other process: `octant fmu host --unguarded` |
@@ -23,6 +24,8 @@ pub mod guard;
 pub mod host;
 #[cfg(target_os = "linux")]
 mod message;
+#[cfg(target_os = "linux")]
+mod patience;
 #[cfg(target_os = "linux")]
 mod remote;
 #[cfg(target_os = "linux")]

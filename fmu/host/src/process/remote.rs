@@ -8,6 +8,7 @@ use super::super::instance::{
     VariableGroup,
 };
 use super::message::{self, Answer, Reply, Request, VERSION};
+use super::patience::Patience;
 use super::shared::{Shared, Spin, Word, put, take};
 use super::watch::{LOOK, Watch};
 use std::io::{self, Read};
@@ -15,7 +16,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::net::UnixStream;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Largest number of different exchanges through shared memory; more go over the socket.
 const PLANS_MAX: usize = 64;
@@ -83,10 +84,9 @@ pub(crate) fn open(
 /// Reader with a deadline, which stops when the process has ended.
 struct Patient<'a> {
     remote: &'a mut Remote,
-    until: Instant,
+    patience: &'a mut Patience,
     /// Reason why it stopped.
     error: Option<InstanceError>,
-    limit: Duration,
     request: &'a str,
 }
 
@@ -98,8 +98,9 @@ impl Read for Patient<'_> {
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {
                     let Remote { watch, shared, .. } = &mut *self.remote;
                     self.error = watch.look(shared);
-                    if self.error.is_none() && Instant::now() >= self.until {
-                        self.error = Some(watch.hangs(shared, self.request, self.limit));
+                    if self.error.is_none() && self.patience.is_over(shared) {
+                        let limit = self.patience.limit();
+                        self.error = Some(watch.hangs(shared, self.request, limit));
                     }
                     if self.error.is_some() {
                         return Err(e);
@@ -126,10 +127,9 @@ impl Remote {
     fn hear(
         &mut self,
         request: &str,
-        limit: Duration,
-        until: Instant,
+        patience: &mut Patience,
     ) -> Result<Option<Reply>, InstanceError> {
-        let mut patient = Patient { remote: self, until, error: None, limit, request };
+        let mut patient = Patient { remote: self, patience, error: None, request };
         let heard = message::read(&mut patient);
         let error = patient.error;
         match (heard, error) {
@@ -157,9 +157,9 @@ impl Remote {
         if let Err(e) = message::write(&mut self.socket, request) {
             return Err(self.watch.lost(&self.shared, &e));
         }
-        let until = Instant::now() + limit;
+        let mut patience = Patience::new(limit);
         loop {
-            if let Some(reply) = self.hear(what, limit, until)? {
+            if let Some(reply) = self.hear(what, &mut patience)? {
                 return reply;
             }
         }
@@ -199,9 +199,9 @@ impl Remote {
         if !self.spin.until_changed(self.shared.word(Word::Answer), before) {
             // Either the child sees that this process sleeps, or this process sees the answer.
             self.shared.word(Word::ParentSleeps).store(1, Ordering::SeqCst);
-            let until = Instant::now() + self.time_limit;
+            let mut patience = Patience::new(self.time_limit);
             while self.shared.word(Word::Answer).load(Ordering::SeqCst) == before {
-                if let Some(reply) = self.hear("a step", self.time_limit, until)? {
+                if let Some(reply) = self.hear("a step", &mut patience)? {
                     self.shared.word(Word::ParentSleeps).store(0, Ordering::Relaxed);
                     return reply.and_then(|_| self.confused());
                 }
@@ -263,9 +263,9 @@ impl Instance for Remote {
             return Err(self.watch.lost(&self.shared, &e));
         }
         if !self.wait(before)? {
-            let until = Instant::now() + self.time_limit;
+            let mut patience = Patience::new(self.time_limit);
             loop {
-                if let Some(reply) = self.hear("a step", self.time_limit, until)? {
+                if let Some(reply) = self.hear("a step", &mut patience)? {
                     return reply.and_then(|_| self.confused());
                 }
             }

@@ -52,6 +52,8 @@ pub(super) enum Word {
     Function = 24,
     // Written by the guard at the end.
     Status,
+    // Written by the child at its start.
+    Process,
 }
 
 impl Shared {

@@ -2,6 +2,7 @@
 
 use super::super::instance::call::{NOWHERE, function_name};
 use super::super::instance::{InstanceError, OpenOptions};
+use super::patience::Patience;
 use super::shared::{Shared, Word};
 use rustix::process::{Pid, Signal, kill_process_group};
 use std::io;
@@ -98,7 +99,11 @@ impl Watch {
         let what = function(shared).unwrap_or(request);
         let error = InstanceError::Process {
             fmu: self.name.clone(),
-            what: format!("gave no answer to {what} for {} s, and was ended", limit.as_secs_f64()),
+            what: format!(
+                "gave no answer to {what} for {} s, and was ended; --time-limit, or time_limit in a scenario, sets \
+                 another limit",
+                limit.as_secs_f64()
+            ),
         };
         self.kill();
         self.ended = Some(error.clone());
@@ -114,7 +119,7 @@ impl Watch {
         shared: &Shared,
         limit: Duration,
     ) -> Result<(), InstanceError> {
-        let until = Instant::now() + limit;
+        let mut patience = Patience::new(limit);
         let mut pause = Duration::from_micros(50);
         loop {
             match self.child.try_wait() {
@@ -132,7 +137,7 @@ impl Watch {
                     });
                     return Ok(());
                 }
-                _ if Instant::now() >= until => return Err(self.hangs(shared, "the end", limit)),
+                _ if patience.is_over(shared) => return Err(self.hangs(shared, "the end", limit)),
                 _ => std::thread::sleep(pause),
             }
             pause = (2 * pause).min(Duration::from_millis(20));

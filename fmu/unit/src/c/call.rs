@@ -68,7 +68,7 @@ fn guarded(
 
 #[cold]
 fn refused(instance: &mut Instance, function: &'static str, refusal: Refusal) -> Status {
-    let Refusal { status, reason } = refusal;
+    let Refusal { status, reason, always_said } = refusal;
     if instance.mode() == Mode::Fatal {
         // A dead instance stays dead.
         return FATAL;
@@ -76,7 +76,12 @@ fn refused(instance: &mut Instance, function: &'static str, refusal: Refusal) ->
     if status != DISCARD {
         instance.run.mode = Mode::Error;
     }
-    instance.log.say(status, format!("{function}: {reason}"));
+    let text = format!("{function}: {reason}");
+    if always_said {
+        instance.log.insist(status, text);
+    } else {
+        instance.log.say(status, text);
+    }
     status
 }
 

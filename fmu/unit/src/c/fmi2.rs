@@ -147,13 +147,15 @@ export! {
     fn fmi2DoStep(c: Component, time: f64, step: f64, _no_set_prior: Boolean) -> Status {
         enter(c, "fmi2DoStep", |instance| {
             let done = instance.agree(time, step).and_then(|agreed| {
-                for _ in 0..agreed.periods {
-                    instance.step_period()?;
+                for period in 0..agreed.periods {
+                    instance.step_period(period == 0)?;
                 }
                 Ok(OK)
             });
-            if done.as_ref().is_err_and(|refusal| refusal.status == DISCARD) {
-                instance.step_failed();
+            if let Err(refusal) = &done
+                && refusal.status == DISCARD
+            {
+                instance.step_failed(refusal);
             }
             done
         })

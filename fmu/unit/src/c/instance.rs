@@ -37,6 +37,8 @@ pub(super) struct Instance {
     pub(super) snapshots: Snapshots,
     /// Outputs before a step, to find whether they change: reused memory.
     pub(super) before: Vec<u64>,
+    /// Reason why the last step was discarded.
+    pub(super) step_refused: String,
 }
 
 impl Instance {
@@ -51,7 +53,8 @@ impl Instance {
         let layout = maker.layout();
         let run = Run::new(maker.model, layout);
         let (snapshots, before) = (Snapshots::default(), Vec::with_capacity(layout.outputs.len()));
-        Self { standard, maker, layout, options, outlet, log, run, snapshots, before }
+        let step_refused = String::new();
+        Self { standard, maker, layout, options, outlet, log, run, snapshots, before, step_refused }
     }
 
     #[inline]
@@ -99,7 +102,13 @@ impl Instance {
 
     #[cold]
     fn not_now(&self) -> Refusal {
-        Refusal::error(format!("not allowed now: {}", self.run.mode.name()))
+        let mode = self.run.mode;
+        // Hosts show the last error, and rarely the discarded step before it.
+        let why = match mode == Mode::StepFailed && !self.step_refused.is_empty() {
+            true => format!(": {}", self.step_refused),
+            false => String::new(),
+        };
+        Refusal::error(format!("not allowed now: {}{why}", mode.name()))
     }
 
     #[inline]

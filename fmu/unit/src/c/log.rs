@@ -88,6 +88,13 @@ impl Log {
         }
     }
 
+    /// Says a message whatever categories are wanted: the standards' switch is for debugging.
+    pub(super) fn insist(&mut self, status: Status, text: String) {
+        if self.heard {
+            self.waiting.push(Message { status, text });
+        }
+    }
+
     /// Switches categories; `None`: all of them. Returns the unknown ones.
     pub(super) fn switch(&mut self, on: bool, names: Option<&[String]>) -> Vec<String> {
         let Some(names) = names else {

@@ -137,16 +137,18 @@ pub(super) struct Refusal {
     pub status: Status,
     /// Reason.
     pub reason: String,
+    /// True if it is said also where debug logging is off: without it a user has no way on.
+    pub always_said: bool,
 }
 
 impl Refusal {
     #[cold]
     pub(super) fn error(reason: impl Into<String>) -> Self {
-        Self { status: octant_fmi::fmi2::ERROR, reason: reason.into() }
+        Self { status: octant_fmi::fmi2::ERROR, reason: reason.into(), always_said: false }
     }
 
     #[cold]
     pub(super) fn discard(reason: impl Into<String>) -> Self {
-        Self { status: octant_fmi::fmi2::DISCARD, reason: reason.into() }
+        Self { status: octant_fmi::fmi2::DISCARD, reason: reason.into(), always_said: false }
     }
 }

@@ -16,6 +16,7 @@ use std::sync::OnceLock;
 pub(super) trait AnyComponent: Send + core::fmt::Debug {
     fn tune(&mut self, values: &CellValues) -> Result<(), String>;
     fn step(&mut self, values: &mut CellValues) -> Result<(), String>;
+    fn step_further(&mut self, values: &mut CellValues) -> Result<(), String>;
     fn period_ns(&self) -> u64;
     fn terminate(&mut self, values: &mut CellValues);
     fn remark(&mut self) -> Option<String>;
@@ -40,6 +41,10 @@ impl<C: ModelComponent> AnyComponent for Boxed<C> {
 
     fn step(&mut self, values: &mut CellValues) -> Result<(), String> {
         self.0.step(values).map_err(|error| error.to_string())
+    }
+
+    fn step_further(&mut self, values: &mut CellValues) -> Result<(), String> {
+        self.0.step_further(values).map_err(|error| error.to_string())
     }
 
     fn period_ns(&self) -> u64 {

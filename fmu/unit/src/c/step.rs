@@ -116,32 +116,37 @@ impl Instance {
         let period_s = self.period_s();
         let expected = match self.model().periods_per_step {
             (1, 1) => format!("the sample period of {period_s} s is expected"),
+            (1, most) => format!(
+                "a whole number of sample periods of {period_s} s is expected, {most} of them at most"
+            ),
             (least, most) => format!(
                 "a whole number of sample periods of {period_s} s, {least} to {most} of them, is \
                  expected"
             ),
         };
-        Refusal::discard(format!("the communication step is {step_s} s, {expected}"))
+        let expected = format!("{expected}: {}", settings(period_s));
+        let reason = format!("the communication step is {step_s} s, {expected}");
+        Refusal { always_said: true, ..Refusal::discard(reason) }
     }
 
-    /// Makes one sample period. Returns true if outputs have changed and the importer handles
+    /// Makes one sample period, the first or a further one of a communication step. Returns true if outputs have changed and the importer handles
     /// events.
     #[inline]
-    pub(super) fn step_period(&mut self) -> Result<bool, Refusal> {
+    pub(super) fn step_period(&mut self, is_first: bool) -> Result<bool, Refusal> {
         if self.options.event_mode_used {
-            return self.step_watched();
+            return self.step_watched(is_first);
         }
-        self.advance()?;
+        self.advance(is_first)?;
         Ok(false)
     }
 
     /// Makes a period and finds out whether outputs have changed.
-    fn step_watched(&mut self) -> Result<bool, Refusal> {
+    fn step_watched(&mut self, is_first: bool) -> Result<bool, Refusal> {
         let outputs = &self.layout().outputs;
         let mut before = core::mem::take(&mut self.before);
         before.clear();
         before.extend(outputs.iter().map(|slot| self.run.values.cells()[*slot as usize]));
-        let advanced = self.advance();
+        let advanced = self.advance(is_first);
         let cells = self.run.values.cells();
         let changed =
             outputs.iter().zip(&before).any(|(slot, before)| cells[*slot as usize] != *before);
@@ -150,11 +155,15 @@ impl Instance {
     }
 
     #[inline]
-    fn advance(&mut self) -> Result<(), Refusal> {
+    fn advance(&mut self, is_first: bool) -> Result<(), Refusal> {
         let Some(component) = &mut self.run.component else {
             return Err(Refusal::error("the instance has not been initialized"));
         };
-        component.step(&mut self.run.values).map_err(Refusal::discard)?;
+        let stepped = match is_first {
+            true => component.step(&mut self.run.values),
+            false => component.step_further(&mut self.run.values),
+        };
+        stepped.map_err(Refusal::discard)?;
         self.run.tick += 1;
         self.set_time(self.tick_s(self.run.tick));
         self.remark();
@@ -162,7 +171,16 @@ impl Instance {
     }
 
     /// Marks a discarded step in FMI 2.0, after which only a stored state can be continued.
-    pub(super) fn step_failed(&mut self) {
+    pub(super) fn step_failed(&mut self, refusal: &Refusal) {
         self.run.mode = Mode::StepFailed;
+        self.step_refused.clone_from(&refusal.reason);
     }
+}
+
+/// Names the settings that give the communication step in tools whose own step is another.
+fn settings(period_s: f64) -> String {
+    format!(
+        "output_interval={period_s} in FMPy, --output-interval {period_s} in fmusim, communication step size {period_s} \
+         in Simulink, --stepSize={period_s} in OMSimulator"
+    )
 }

@@ -26,4 +26,5 @@ pub static MODEL: Model = Model {
                   compensates them and navigates.",
     variables: &VARIABLES,
     periods_per_step: (1, 1),
+    sums_periods: false,
 };

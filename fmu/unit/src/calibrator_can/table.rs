@@ -108,6 +108,7 @@ pub static MODEL: Model = Model {
                   navigation and estimated errors go.",
     variables: &VARIABLES,
     periods_per_step: Model::ANY_STEP,
+    sums_periods: false,
 };
 
 /// Cells of the Calibrator's outputs.

@@ -43,6 +43,51 @@ pub(super) fn put(epoch: &Epoch, values: &mut CellValues) {
     }
 }
 
+/// Outputs of the earlier sample periods of a communication step.
+pub(super) struct Gathered {
+    valid: bool,
+    theta_rad: [f64; 3],
+    velocity_mps: [f64; 3],
+    status: i32,
+    kind: i32,
+    age_ns: f64,
+}
+
+impl Gathered {
+    pub(super) fn of(values: &CellValues) -> Self {
+        Self {
+            valid: values.boolean(slot::IMU_VALID),
+            theta_rad: values.reals(slot::GYRO),
+            velocity_mps: values.reals(slot::ACCELEROMETER),
+            status: values.integer(slot::IMU_STATUS),
+            kind: values.integer(slot::REFERENCE_KIND),
+            age_ns: values.real(slot::REFERENCE_AGE),
+        }
+    }
+
+    /// Adds them to the outputs of the next period: sums of increments, which are exact, flags of any
+    /// period, and the last reference with its age. Where a sample was lost the whole step isn't valid.
+    pub(super) fn add_to(&self, values: &mut CellValues, period_ns: u64) {
+        let valid = values.boolean(slot::IMU_VALID);
+        values.set_boolean(slot::IMU_VALID, valid && self.valid);
+        for axis in 0..3 {
+            for (slot, before) in [
+                (slot::GYRO + axis, self.theta_rad[axis]),
+                (slot::ACCELEROMETER + axis, self.velocity_mps[axis]),
+            ] {
+                // Without a sample the increments are old ones.
+                let now = if valid { values.real(slot) } else { 0.0 };
+                values.set_real(slot, if self.valid { before } else { 0.0 } + now);
+            }
+        }
+        values.set_integer(slot::IMU_STATUS, self.status | values.integer(slot::IMU_STATUS));
+        if values.integer(slot::REFERENCE_KIND) == 0 && self.kind != 0 {
+            values.set_integer(slot::REFERENCE_KIND, self.kind);
+            values.set_real(slot::REFERENCE_AGE, self.age_ns + period_ns as f64);
+        }
+    }
+}
+
 /// Writes that there is no sample.
 pub(super) fn put_none(values: &mut CellValues) {
     values.set_boolean(slot::IMU_VALID, false);

@@ -37,5 +37,6 @@ pub static MODEL: Model = Model {
                   case, two-axis turntable, gyros and accelerometers with their errors, the \
                   reference of a calibration, and faults in all of them.",
     variables: &VARIABLES,
-    periods_per_step: (1, 1),
+    periods_per_step: (1, 1_000_000),
+    sums_periods: true,
 };

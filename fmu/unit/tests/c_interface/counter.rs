@@ -34,6 +34,7 @@ pub(super) static MODEL: Model = Model {
     description: "It counts.",
     variables: &VARIABLES,
     periods_per_step: (1, 4),
+    sums_periods: false,
 };
 
 pub(super) const U: usize = MODEL.slot("u");

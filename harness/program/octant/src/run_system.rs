@@ -2,6 +2,7 @@
 
 use super::progress::{watch_interrupts, with_progress};
 use crate::failure::Failure;
+use crate::fmu::time_limit_of;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
@@ -12,7 +13,7 @@ use octant_cosim::order::SteppingOrder;
 use octant_cosim::run::{PrepareError, PreparedSystem, ROWS_MAX, Request};
 use octant_cosim::summary::{FmuResult, SystemEnded};
 use octant_evidence::{FmuFacts, Manifest, RunFacts, RunFolder};
-use octant_fmu_host::instance::ProcessPlace;
+use octant_fmu_host::instance::{OpenOptions, ProcessPlace};
 use octant_scenario::quantity::{UnitDimension, parse};
 use octant_score::junit::junit_of;
 use octant_verdict::Verdict;
@@ -51,6 +52,12 @@ pub(super) struct SystemArguments {
     /// Also record into values.csv.
     #[arg(long)]
     csv: bool,
+    /// Maximum number of values that aren't numbers (NaN) from outputs into inputs; with more the run ends with an
+    /// error. By default any number, with a warning.
+    #[arg(long, value_name = "N")]
+    nan_limit: Option<u64>,
+    #[arg(long, value_name = "SECONDS", conflicts_with = "in_process", help = OpenOptions::limits_help())]
+    time_limit: Option<String>,
     /// Run the FMUs in this process: faster, but a crash of an FMU ends this program too.
     #[arg(long)]
     in_process: bool,
@@ -102,6 +109,8 @@ pub(super) fn command(
         stop,
         every,
         csv,
+        nan_limit,
+        time_limit,
         in_process,
         allow_tool,
     } = arguments;
@@ -124,6 +133,8 @@ pub(super) fn command(
         allow_tool: *allow_tool,
         every: *every,
         require,
+        no_numbers_max: *nan_limit,
+        time_limit: time_limit.as_deref().map(time_limit_of).transpose()?,
     })?;
     for warning in prepared.warnings() {
         note!("octant: {warning}");
@@ -228,6 +239,8 @@ fn rerun(shared: &SharedOptions<'_>, arguments: &SystemArguments, used_seed: u64
         stop,
         every,
         csv,
+        nan_limit,
+        time_limit,
         in_process,
         allow_tool,
     } = arguments;
@@ -246,6 +259,8 @@ fn rerun(shared: &SharedOptions<'_>, arguments: &SystemArguments, used_seed: u64
     add("--step", step.clone());
     add("--start", start.clone());
     add("--stop", stop.clone());
+    add("--time-limit", time_limit.clone());
+    add("--nan-limit", nan_limit.map(|limit| limit.to_string()));
     add("--every", every.map(|every| every.to_string()));
     add("--seed", Some(used_seed.to_string()));
     for (option, is_given) in [

@@ -290,6 +290,17 @@ fn a_library_that_does_not_load_is_a_finding() {
 }
 
 #[test]
+fn an_interface_that_is_not_tried_is_no_error_of_the_fmu() {
+    let found = stepped(&foreign::unpacked("scheduled_fmi3"));
+    let expected =
+        "load.not-tried: not tried: octant fmu run --interface scheduled-execution runs it";
+    assert!(found.iter().any(|one| one == expected), "{found:?}");
+    assert!(found.iter().all(|one| !one.starts_with("load.opens")), "{found:?}");
+    // An FMU with both kinds is tried with both, and neither is an error.
+    assert_eq!(stepped(&foreign::unpacked("vanderpol_fmi3")), [] as [&str; 0]);
+}
+
+#[test]
 fn what_needs_its_tool_is_loaded_on_request_alone() {
     let (folder, binaries) = gain();
     compile(&binaries.join("gain_fmi2.so"), &[]);

@@ -52,6 +52,7 @@ mod fmu_run;
 #[cfg(target_os = "linux")]
 mod fmu_scheduled;
 mod fmu_source;
+mod fmu_timed;
 mod formats;
 mod further_states;
 mod fuzz_corpus;
@@ -108,6 +109,7 @@ mod solution_doubts;
 mod source_uri;
 #[cfg(feature = "object-storage")]
 mod storage_lies;
+mod system_exact;
 mod system_foreign;
 mod terminal;
 mod text_gaps;

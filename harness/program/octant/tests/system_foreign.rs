@@ -14,7 +14,12 @@ const HEAD: &str = r#"<SystemStructureDescription version="1.0" name="foreign"
     xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">"#;
 
 /// Makes a folder with a system of these elements and connections.
-fn system(fmus: &[&str], elements: &str, connections: &str, more: &str) -> tempfile::TempDir {
+pub(crate) fn system(
+    fmus: &[&str],
+    elements: &str,
+    connections: &str,
+    more: &str,
+) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("resources")).unwrap();
     for fmu in fmus {
@@ -29,7 +34,12 @@ fn system(fmus: &[&str], elements: &str, connections: &str, more: &str) -> tempf
     folder
 }
 
-fn component(name: &str, fmu: &str, connectors: &[(&str, &str)], set: &[(&str, &str)]) -> String {
+pub(crate) fn component(
+    name: &str,
+    fmu: &str,
+    connectors: &[(&str, &str)],
+    set: &[(&str, &str)],
+) -> String {
     let connectors: String = connectors
         .iter()
         .map(|(name, kind)| format!("<Connector name=\"{name}\" kind=\"{kind}\"/>"))
@@ -46,7 +56,7 @@ fn component(name: &str, fmu: &str, connectors: &[(&str, &str)], set: &[(&str, &
     )
 }
 
-fn connection(from: &str, to: &str) -> String {
+pub(crate) fn connection(from: &str, to: &str) -> String {
     let ((a, y), (b, u)) = (from.split_once('.').unwrap(), to.split_once('.').unwrap());
     format!(
         "<Connection startElement=\"{a}\" startConnector=\"{y}\" endElement=\"{b}\" \
@@ -54,17 +64,17 @@ fn connection(from: &str, to: &str) -> String {
     )
 }
 
-fn run(system: &Path, out: &Path, more: &[&str]) -> Output {
+pub(crate) fn run(system: &Path, out: &Path, more: &[&str]) -> Output {
     let mut arguments = vec!["run", system.to_str().unwrap(), "--out", out.to_str().unwrap()];
     arguments.extend(more);
     octant(&arguments)
 }
 
-fn error(output: &Output) -> String {
+pub(crate) fn error(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-fn summary(folder: &Path) -> Value {
+pub(crate) fn summary(folder: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }
 

@@ -191,6 +191,9 @@ fn collect(table: &Table, prefix: &str, path: &str, all: &mut Vec<Setting>) -> R
 
 fn set(value: &Value, at: &EntryPlace) -> Result<Set, Problem> {
     match value {
+        Value::Integer(number) if number.unsigned_abs() > 1 << 53 => {
+            Ok(Set::Whole(i128::from(*number)))
+        }
         Value::Integer(number) => Ok(Set::Number(*number as f64)),
         Value::Number(number) if number.is_finite() => Ok(Set::Number(*number)),
         Value::Boolean(flag) => Ok(Set::Flag(*flag)),

@@ -92,6 +92,9 @@ const PLANT: Prose = Prose {
         "One communication step is one sample period. The step from t(k) to t(k+1) first takes the \
          gimbal command, then makes the sample of this interval: its outputs hold from t(k+1) on, \
          with imu.valid true. After the initialization, before the first step, imu.valid is false.",
+        "A communication step of several sample periods makes as many samples. Its increments are sums \
+         over all of them, imu.status has the flags of any, the reference is the last one with its age, \
+         and imu.valid is false if one sample was lost. The calibrator takes no such sums.",
     ],
     wiring: &[
         "Its outputs have the names of the calibrator's inputs, and the gimbal command the other way: \

@@ -61,6 +61,7 @@ pub(super) static SAMPLE: Model = Model {
             .start(&[2.0]),
     ],
     periods_per_step: (1, 1),
+    sums_periods: false,
 };
 
 /// Counts its steps.

@@ -1,18 +1,22 @@
 //! Converts a value on a wire: units, transformations, and the type at its end.
 
+mod carried;
+
 use super::flat::{Hop, HopEntry};
 use super::ssp::parameters::{SystemEnumeration, Transformation};
-use super::values::{fits, is_float, is_numeric, kind_name, rounded};
+use super::values::{has, is_float, is_numeric, kind_name, rounded, told};
+use carried::CarriedNumber;
 use octant_fmu_host::description::units::{UnitConversion, candidates, dimension, known, meant};
 use octant_fmu_host::description::{BaseUnit, Description, Variable, VariableType};
+use octant_fmu_host::instance::whole;
 
 /// One operation on a value.
 #[derive(Clone, Debug, PartialEq)]
 enum Step {
     /// factor · value + offset.
     Linear(f64, f64),
-    /// Table from value to value.
-    Map(Vec<(f64, f64)>),
+    /// Table from value to value: of whole numbers, and of Booleans as 0 and 1.
+    Map(Vec<(i128, i128)>),
     /// Passage through an entry of a signal dictionary, which has a type.
     Entry(HopEntry),
 }
@@ -20,11 +24,13 @@ enum Step {
 /// Operations on a value on its way to a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WireConversion {
+    /// Type at the beginning.
+    from: VariableType,
     steps: Vec<Step>,
     /// Type at the end.
     kind: VariableType,
     /// Values of an enumeration at the end, where the description names them.
-    items: Vec<f64>,
+    items: Vec<i64>,
     /// True if every value of the source fits.
     total: bool,
 }
@@ -193,13 +199,13 @@ pub struct Terminal<'a> {
 
 impl Terminal<'_> {
     /// Returns the value of an item.
-    fn item(&self, name: &str) -> Option<f64> {
+    fn item(&self, name: &str) -> Option<i64> {
         let own = self.items.iter().find(|(_, item)| item == name).map(|(value, _)| *value);
         let named = || {
             let items = &self.enumeration?.items;
             items.iter().find(|(item, _)| item == name).map(|(_, value)| *value)
         };
-        own.or_else(named).map(|value| value as f64)
+        own.or_else(named)
     }
 }
 
@@ -215,6 +221,7 @@ impl WireConversion {
         units: &[(String, BaseUnit)],
     ) -> Result<Self, WireConversionError> {
         let mut steps = Vec::new();
+        let first = from.kind;
         let mut from = from.clone();
         let mut last: Option<&HopEntry> = None;
         let mut rest = hops;
@@ -250,10 +257,10 @@ impl WireConversion {
         })?;
         steps.extend(more);
         let items = match to.kind {
-            VariableType::Enumeration => to.items.iter().map(|(value, _)| *value as f64).collect(),
+            VariableType::Enumeration => to.items.iter().map(|(value, _)| *value).collect(),
             _ => Vec::new(),
         };
-        Ok(Self { steps, kind: to.kind, items, total })
+        Ok(Self { from: first, steps, kind: to.kind, items, total })
     }
 
     /// Type at the end.
@@ -262,47 +269,74 @@ impl WireConversion {
         self.kind
     }
 
-    /// Returns why a value can't be carried: the first entry of a dictionary that doesn't have it,
-    /// else the type at the end.
+    /// Returns why a value, as it is exchanged, can't be carried: the first entry of a dictionary that
+    /// doesn't have it, else the type at the end.
     #[must_use]
     pub fn misfit(&self, value: f64) -> String {
         for (count, step) in self.steps.iter().enumerate() {
             let Step::Entry(entry) = step else { continue };
-            let upto = Self {
-                steps: self.steps[..=count].to_vec(),
-                kind: VariableType::Float64,
-                items: Vec::new(),
-                total: true,
-            };
-            if upto.apply(value).is_none() {
+            if self.steps[..=count].iter().try_fold(self.begin(value), Step::apply).is_none() {
                 return format!("{entry} is a {} and has no such value", kind_name(entry.kind));
             }
         }
         format!("the input is a {} and has no such value", kind_name(self.kind))
     }
 
-    /// Returns a value as it is at the end of its way; `None`: the type there has no such value, or
-    /// a mapping has no entry for it.
+    /// Returns a value at the beginning, as it is exchanged, in words.
+    #[must_use]
+    pub fn told(&self, value: f64) -> String {
+        told(self.from, value)
+    }
+
+    fn begin(&self, value: f64) -> CarriedNumber {
+        if whole::is_wide(self.from) {
+            return CarriedNumber::Whole(whole::from_bits(self.from, value));
+        }
+        CarriedNumber::Real(value)
+    }
+
+    /// Returns a value as it is at the end of its way, whole numbers of 64 bits at both ends as their
+    /// bits; `None`: the type there has no such value, or a mapping has no entry for it.
     #[inline]
     #[must_use]
+    pub fn carry(&self, value: f64) -> Option<f64> {
+        if self.total && self.steps.is_empty() && self.from == self.kind {
+            return Some(value);
+        }
+        let value = self.convert(self.begin(value))?;
+        match value {
+            CarriedNumber::Whole(whole) => whole::to_bits(self.kind, whole),
+            CarriedNumber::Real(number) => Some(number),
+        }
+    }
+
+    /// Returns a number as it is at the end of its way; `None`: the type there has no such value, or a
+    /// mapping has no entry for it.
+    #[must_use]
     pub fn apply(&self, value: f64) -> Option<f64> {
-        let mut value = value;
-        for step in &self.steps {
-            value = match step {
-                // Adding 0 would turn −0 into 0.
-                Step::Linear(factor, 0.0) => factor * value,
-                Step::Linear(factor, offset) => factor * value + offset,
-                Step::Map(entries) => {
-                    entries.iter().find(|(source, _)| *source == value).map(|(_, to)| *to)?
-                }
-                Step::Entry(entry) => entry.passed(value)?,
-            };
+        let value = match whole::is_wide(self.from) {
+            true => CarriedNumber::Whole(whole::of(value)?),
+            false => CarriedNumber::Real(value),
+        };
+        self.convert(value)?.real()
+    }
+
+    /// Converts a value: wide types end as whole numbers, all others as real ones.
+    fn convert(&self, value: CarriedNumber) -> Option<CarriedNumber> {
+        let value = self.steps.iter().try_fold(value, Step::apply)?;
+        if is_float(self.kind) {
+            return Some(CarriedNumber::Real(rounded(value.real()?, self.kind)));
         }
-        if self.total || is_float(self.kind) {
-            return Some(rounded(value, self.kind));
+        let whole = value.whole()?;
+        let item = || i64::try_from(whole).is_ok_and(|whole| self.items.contains(&whole));
+        let known = self.items.is_empty() || item();
+        if !(self.total || known && has(self.kind, whole)) {
+            return None;
         }
-        let known = self.items.is_empty() || self.items.contains(&value);
-        (known && fits(value, self.kind)).then_some(value)
+        Some(match whole::is_wide(self.kind) {
+            true => CarriedNumber::Whole(whole),
+            false => CarriedNumber::Real(whole as f64),
+        })
     }
 }
 
@@ -318,17 +352,6 @@ impl Hop {
             }
             None => Some(WireUnit::named(name, units)),
         }
-    }
-}
-
-impl HopEntry {
-    /// Returns a value as the entry's type has it.
-    fn passed(&self, value: f64) -> Option<f64> {
-        if is_float(self.kind) {
-            return Some(rounded(value, self.kind));
-        }
-        let known = self.items.is_empty() || self.items.iter().any(|item| item.0 as f64 == value);
-        (known && fits(value, self.kind)).then_some(value)
     }
 }
 
@@ -404,7 +427,7 @@ fn step(
             if from.kind != VariableType::Boolean {
                 return wrong("Booleans");
             }
-            let number = |value: bool| f64::from(u8::from(value));
+            let number = |value: bool| i128::from(value);
             let entry = |source: bool| {
                 table[usize::from(source)].map(|target| (number(source), number(target)))
             };
@@ -414,7 +437,7 @@ fn step(
             if !whole || from.kind == VariableType::Boolean {
                 return wrong("whole numbers and enumerations");
             }
-            let entry = |(source, target): &(i64, i64)| (*source as f64, *target as f64);
+            let entry = |(source, target): &(i64, i64)| ((*source).into(), (*target).into());
             Some(Step::Map(table.iter().map(entry).collect()))
         }
         Transformation::Enumeration(table) => {
@@ -424,7 +447,8 @@ fn step(
             let entry = |(source, target): &(String, String)| {
                 let unknown = |name: &str| WireConversionError::Item { found: name.to_owned() };
                 let source = from.item(source).ok_or_else(|| unknown(source))?;
-                Ok((source, to.item(target).ok_or_else(|| unknown(target))?))
+                let target = to.item(target).ok_or_else(|| unknown(target))?;
+                Ok((i128::from(source), i128::from(target)))
             };
             Some(Step::Map(table.iter().map(entry).collect::<Result<_, WireConversionError>>()?))
         }
@@ -459,7 +483,7 @@ fn check_types(
         }
         (VariableType::Enumeration, VariableType::Enumeration) if !mapped => {
             for (value, name) in from.items {
-                if to.item(name) != Some(*value as f64) {
+                if to.item(name) != Some(*value) {
                     return Err(WireConversionError::Enumerations {
                         item: name.clone(),
                         value: *value,

@@ -25,7 +25,7 @@ pub enum MasterError {
         /// The input.
         target: String,
         /// The value of the output.
-        value: f64,
+        value: String,
         /// Time of the system, s.
         time_s: f64,
         /// Reason.
@@ -37,11 +37,28 @@ pub enum MasterError {
         /// The input.
         target: String,
         /// The value.
-        value: f64,
+        value: String,
         /// Time of the system, s.
         time_s: f64,
         /// Message that the FMU logged, after a colon; else empty.
         said: String,
+    },
+    /// More outputs than allowed were no numbers and went into inputs.
+    #[error(
+        "{source_name} isn't a number, first at {since_s} s, and goes into {target}: found {found} such values on all \
+         connections, expected {max} at most (--nan-limit)"
+    )]
+    NoNumber {
+        /// The output.
+        source_name: String,
+        /// The input.
+        target: String,
+        /// First time at which the output was no number, s.
+        since_s: f64,
+        /// Number of such values on all connections.
+        found: u64,
+        /// Number allowed.
+        max: u64,
     },
     /// An FMU refused parameters that were to change.
     #[error("{node} refused {values} at {time_s} s{said}")]
@@ -88,6 +105,7 @@ impl Failing for MasterError {
         match self {
             Self::Value { .. }
             | Self::Refused { .. }
+            | Self::NoNumber { .. }
             | Self::Tuned { .. }
             | Self::Loop { .. }
             | Self::Discarded { .. } => FailureKind::Input,

@@ -130,10 +130,11 @@ impl RunExperiment {
         };
         let missing = |what, example| ExperimentError::Missing { what, example };
         let start_s = said.start_s.or(structure.start_s).unwrap_or(0.0);
-        let step_s = match said.step_s.or(structure.co_simulation.step_s).or(structure.osp_step_s) {
-            Some(step_s) => step_s,
-            None => of_fmus("step", step_of)?.ok_or_else(|| missing("step", "\"5 ms\""))?,
-        };
+        let step_s =
+            match said.step_s.or(structure.co_simulation.step_s).or(structure.others_step_s) {
+                Some(step_s) => step_s,
+                None => of_fmus("step", step_of)?.ok_or_else(|| missing("step", "\"5 ms\""))?,
+            };
         let stop_s = match said.stop_s.or(structure.stop_s) {
             Some(stop_s) => stop_s,
             None => of_fmus("stop", |description| description.default_experiment.stop_s)?

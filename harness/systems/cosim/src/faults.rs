@@ -9,6 +9,7 @@ use octant_faults::connection::kinds::Target;
 use octant_faults::connection::{ConnectionFaultSpec, ConnectionStation};
 use octant_faults::{FaultBuildError, Value, Values};
 use octant_fmu_host::description::{Description, VariableType};
+use octant_fmu_host::instance::whole;
 use octant_scenario::{ConnectionFault, FileProblems, Given, Problem, quantity_of};
 
 /// Faults of a run, ready to act.
@@ -31,12 +32,18 @@ pub struct OutputCondition {
     pub above: bool,
     /// The value, in the unit of the output.
     pub value: f64,
+    /// Type of the output.
+    pub kind: VariableType,
 }
 
 impl OutputCondition {
-    /// Returns whether the condition holds for a value; `None` for NaN.
+    /// Returns whether the condition holds for a value, as it is exchanged; `None` for NaN.
     #[must_use]
     pub fn holds(&self, value: f64) -> Option<bool> {
+        let value = match whole::is_wide(self.kind) {
+            true => whole::from_bits(self.kind, value) as f64,
+            false => value,
+        };
         let holds = if self.above { value > self.value } else { value < self.value };
         (!value.is_nan()).then_some(holds)
     }
@@ -338,5 +345,5 @@ fn condition(
                 .map_err(|message| format!("found {when:?}: {:?}, {message}", written.value))?
         }
     };
-    Ok(OutputCondition { spot, above: written.above, value })
+    Ok(OutputCondition { spot, above: written.above, value, kind: variable.kind })
 }

@@ -5,7 +5,7 @@ use super::error::MasterError;
 use super::graph;
 use super::solve::{IterationLimits, SolveError, Solved, solve};
 use super::system::{ExchangeSide, NumberPath, System};
-use super::values::is_float;
+use super::values::{carried, is_float, number_of, told};
 use octant_fmu_host::description::{Causality, Description, Initial};
 use octant_fmu_host::instance::{Instance, InstanceError, VariableGroup};
 use std::collections::BTreeMap;
@@ -164,7 +164,7 @@ impl Initializer<'_> {
         let instance = &mut self.instances[vertex.node];
         let description = instance.description();
         let variable = &description.variables[side.variables[vertex.at]];
-        let group = VariableGroup::of(description, variable);
+        let group = VariableGroup::of(description, variable).map(VariableGroup::exactly);
         let result = group.and_then(|group| match vertex.of {
             Of::Output => instance.get(&group, &mut self.outputs[vertex.node][range]),
             Of::Input => instance.set(&group, &self.inputs[vertex.node][range]),
@@ -203,12 +203,19 @@ impl Initializer<'_> {
             Of::Fixed => fixed[link.wire.to.node][link.wire.to.place],
             _ => inputs[link.wire.to.node][link.wire.to.place],
         };
-        let mut u: Vec<f64> = inside.iter().map(|link| at(self.inputs, fixed, link)).collect();
+        let start_s = self.start_s;
+        // The solution calculates with numbers.
+        let number = |link: &Link<'_>, value: f64| {
+            let kind = link.wire.conversion.kind();
+            number_of(kind, value).ok_or_else(|| link.wire.misfit(value, start_s))
+        };
+        let u = inside.iter().map(|link| number(link, at(self.inputs, fixed, link)));
+        let mut u: Vec<f64> = u.collect::<Result<_, _>>()?;
         let solved = solve(&mut u, &nominal, continuous, limits, |u, back| {
             self.around_once(members, &inside, fixed, u)?;
             for (link, back) in inside.iter().zip(back) {
                 let value = self.outputs[link.wire.from.node][link.wire.from.place];
-                *back = link.wire.convert(value, self.start_s)?;
+                *back = number(link, link.wire.convert(value, self.start_s)?)?;
             }
             Ok::<(), MasterError>(())
         })
@@ -225,10 +232,12 @@ impl Initializer<'_> {
         fixed: &mut [Vec<f64>],
         u: &[f64],
     ) -> Result<(), MasterError> {
-        for (link, value) in inside.iter().zip(u) {
+        for (link, number) in inside.iter().zip(u) {
+            let value = carried(link.wire.conversion.kind(), *number);
+            let value = value.ok_or_else(|| link.wire.misfit(*number, self.start_s))?;
             match link.to.of {
-                Of::Fixed => fixed[link.wire.to.node][link.wire.to.place] = *value,
-                _ => self.inputs[link.wire.to.node][link.wire.to.place] = *value,
+                Of::Fixed => fixed[link.wire.to.node][link.wire.to.place] = value,
+                _ => self.inputs[link.wire.to.node][link.wire.to.place] = value,
             }
         }
         let inputs = members.iter().filter(|vertex| vertex.of != Of::Output);
@@ -251,15 +260,27 @@ impl NumberPath {
     /// Returns the value at the end of the wire.
     #[inline]
     pub(super) fn convert(&self, value: f64, time_s: f64) -> Result<f64, MasterError> {
-        self.conversion.apply(value).ok_or_else(|| self.misfit(value, time_s))
+        self.conversion.carry(value).ok_or_else(|| self.misfit(value, time_s))
     }
 
+    /// Error for a value on which faults can't act.
     #[cold]
-    fn misfit(&self, value: f64, time_s: f64) -> MasterError {
+    pub(super) fn beyond_faults(&self, value: f64, time_s: f64) -> MasterError {
         MasterError::Value {
             source_name: self.source.clone(),
             target: self.target.clone(),
-            value,
+            value: told(self.conversion.kind(), value),
+            time_s,
+            reason: "faults act on whole numbers up to 2^53 alone".to_owned(),
+        }
+    }
+
+    #[cold]
+    pub(super) fn misfit(&self, value: f64, time_s: f64) -> MasterError {
+        MasterError::Value {
+            source_name: self.source.clone(),
+            target: self.target.clone(),
+            value: self.conversion.told(value),
             time_s,
             reason: self.conversion.misfit(value),
         }

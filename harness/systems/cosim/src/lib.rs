@@ -13,6 +13,7 @@
 //! | `open` | the FMUs opened |
 //! | [`tuning`] | parameters that change while a system runs |
 //! | [`requirements`] | limits on signals of the system |
+//! | [`stream`] | hash of the inputs, outputs and parameters of a run |
 //! | [`system`] | connectors found in the descriptions of the FMUs |
 
 pub mod convert;
@@ -34,6 +35,7 @@ pub mod simulation;
 pub mod single;
 pub mod solve;
 pub mod ssp;
+pub mod stream;
 pub mod summary;
 pub mod system;
 pub mod tuning;

@@ -27,8 +27,7 @@ pub(super) struct OpenedSystem {
 pub(super) fn open_all(
     structure: &SystemStructure,
     flat: &Flat,
-    place: ProcessPlace,
-    allow_tool: bool,
+    common: &OpenOptions,
 ) -> Result<OpenedSystem, SspError> {
     let files = OpenedFmus::default();
     let mut instances = Vec::with_capacity(flat.components.len());
@@ -45,7 +44,7 @@ pub(super) fn open_all(
         let others = &flat.components[..instances.len()];
         if let Some(other) = others.iter().find(|other| other.file == component.file)
             && fmu.only_once_per_process()
-            && place == ProcessPlace::ThisProcess
+            && common.place == ProcessPlace::ThisProcess
         {
             return Err(failed(format!(
                 "{} can be there once in a process, and {:?} is it already: leave out \
@@ -59,10 +58,8 @@ pub(super) fn open_all(
                 Implementation::CoSimulation => InterfaceKind::CoSimulation,
                 Implementation::ModelExchange => InterfaceKind::ModelExchange,
             },
-            place,
-            allow_tool,
             instance_name: Some(component.name.clone()),
-            ..OpenOptions::default()
+            ..common.clone()
         };
         instances.push(fmu.instance(&options).map_err(cannot)?);
         fmus.push(fmu);

@@ -5,9 +5,11 @@ use super::convert::{Terminal, WireConversion, WireUnit};
 use super::flat::{Flat, FlatComponent, FlatParameter};
 use super::ssp::SspError;
 use super::ssp::structure::SystemStructure;
+use super::values::told;
 use octant_base::names::suggestion;
 use octant_fmu_bind::settings::{Starts, ValueSettings};
 use octant_fmu_host::description::{Description, Variable, VariableType};
+use octant_fmu_host::instance::whole;
 use octant_scenario::Set;
 
 /// Collects the values that are set in the FMUs of a system before they start, in the order of the
@@ -174,17 +176,18 @@ fn values(
     let conversion = WireConversion::of(&from, &to, hops, &structure.units)
         .map_err(|error| error.to_string())?;
     let values = literal.numbers.iter().map(|number| {
-        let value = conversion.apply(*number).ok_or_else(|| {
+        let value = conversion.carry(*number).ok_or_else(|| {
             format!(
-                "{number} is no value of {}, which is a {}",
+                "{} is no value of {}, which is a {}",
+                told(literal.kind, *number),
                 variable.name,
                 variable.kind.name()
             )
         })?;
-        Ok(if variable.kind == VariableType::Boolean {
-            Set::Flag(value != 0.0)
-        } else {
-            Set::Number(value)
+        Ok(match variable.kind {
+            VariableType::Boolean => Set::Flag(value != 0.0),
+            kind if whole::is_wide(kind) => Set::Whole(whole::from_bits(kind, value)),
+            _ => Set::Number(value),
         })
     });
     values.collect::<Result<Vec<_>, String>>().map(Some)
@@ -233,7 +236,10 @@ fn one(text: &str) -> Set {
     match (text, text.parse::<f64>()) {
         ("true", _) => Set::Flag(true),
         ("false", _) => Set::Flag(false),
-        (_, Ok(number)) => Set::Number(number),
+        (text, Ok(number)) => match text.parse::<i128>() {
+            Ok(whole) if whole.abs() > whole::EXACT_MAX => Set::Whole(whole),
+            _ => Set::Number(number),
+        },
         _ => Set::Text(text.trim_matches('"').to_owned()),
     }
 }

@@ -1,4 +1,4 @@
-//! Records a run: rows of all connected variables and outputs, and the hash of its stream.
+//! Records a run: rows of all connected inputs and all outputs.
 //!
 //! Row 0 is the state after initialization. Each later row holds the outputs at its time, and the
 //! inputs with which the step to that time was made.
@@ -8,8 +8,9 @@ use super::error::MasterError;
 use super::requirements::{NamedSignal, Requiring};
 use super::simulation::Simulation;
 use super::system::{ExchangeSide, System, element_names};
+use super::values::is_numeric;
 use crate::single::output::{OutputColumn, Outputs, Sink, SinkError};
-use octant_fmu_host::description::Description;
+use octant_fmu_host::description::{Description, VariableType};
 use std::io;
 use std::path::Path;
 
@@ -36,14 +37,27 @@ pub struct RowRecorder {
     requiring: Requiring,
 }
 
-/// Columns of all nodes, each with its place among the numbers, and the number of all numbers.
+/// Columns of all nodes, each with its place among the numbers or the texts, and the number of all
+/// numbers.
 fn columns(system: &System, descriptions: &[&Description]) -> (Vec<OutputColumn>, usize) {
     let mut columns = Vec::new();
-    let mut place = 0;
+    let (mut place, mut texts) = (0, 0);
     for (node, description) in system.nodes.iter().zip(descriptions) {
         for side in [&node.inputs, &node.outputs, &node.watched] {
             columns.extend(of_side(&node.name, side, description, place));
             place += side.plan.elements;
+        }
+        for (number, group) in &node.written {
+            let variable = &description.variables[*number];
+            for (at, name) in element_names(description, variable).into_iter().enumerate() {
+                columns.push(OutputColumn {
+                    name: format!("{}.{name}", node.name),
+                    kind: variable.kind,
+                    place: texts + at,
+                    unit: None,
+                });
+            }
+            texts += group.elements;
         }
     }
     (columns, place)
@@ -53,8 +67,9 @@ fn columns(system: &System, descriptions: &[&Description]) -> (Vec<OutputColumn>
 #[must_use]
 pub fn signals(system: &System, descriptions: &[&Description]) -> Vec<NamedSignal> {
     let (columns, places) = columns(system, descriptions);
-    let mut signals = vec![NamedSignal { name: String::new(), unit: None }; places];
-    for column in columns {
+    let mut signals =
+        vec![NamedSignal { name: String::new(), unit: None, kind: VariableType::Float64 }; places];
+    for column in columns.into_iter().filter(|column| is_numeric(column.kind)) {
         let node = system.nodes.iter().zip(descriptions).find_map(|(node, description)| {
             let name = column.name.strip_prefix(&node.name)?.strip_prefix('.')?;
             let base = name.split('[').next().unwrap_or(name);
@@ -64,7 +79,7 @@ pub fn signals(system: &System, descriptions: &[&Description]) -> Vec<NamedSigna
         let unit =
             node.and_then(|(description, variable)| WireUnit::of_variable(description, variable));
         if let Some(signal) = signals.get_mut(column.place) {
-            *signal = NamedSignal { name: column.name, unit };
+            *signal = NamedSignal { name: column.name, unit, kind: column.kind };
         }
     }
     signals
@@ -119,7 +134,7 @@ impl RowRecorder {
     /// If an FMU fails, or a file can't be written.
     pub fn row(
         &mut self,
-        simulation: &mut Simulation<'_>,
+        simulation: &Simulation<'_>,
         system: &System,
         last: bool,
     ) -> Result<(), RowError> {
@@ -138,7 +153,7 @@ impl RowRecorder {
             let outputs = room(node.outputs.plan.elements);
             self.numbers[outputs].copy_from_slice(simulation.outputs(number));
             let watched = room(node.watched.plan.elements);
-            simulation.watched(number, &mut self.numbers[watched])?;
+            self.numbers[watched].copy_from_slice(simulation.watched(number));
         }
         let time_s = simulation.time_s(simulation.steps());
         self.requiring.look(time_s, &self.numbers);
@@ -146,7 +161,7 @@ impl RowRecorder {
             return Ok(());
         }
         for sink in &mut self.sinks {
-            sink.row(time_s, &self.outputs, &self.numbers, &[])?;
+            sink.row(time_s, &self.outputs, &self.numbers, simulation.written())?;
         }
         self.rows += 1;
         Ok(())
@@ -188,43 +203,4 @@ fn of_side(
         }
     }
     columns
-}
-
-/// Hash of the values on the connections: BLAKE3 over each step's number (u64), the values that
-/// every connected input got at its beginning, and the values that every connected output gave at
-/// its end, in the order of the structure; each as the 64 bits of its f64, little-endian. Point 0
-/// has the outputs alone.
-#[derive(Debug, Default)]
-pub struct ConnectionHash {
-    hasher: blake3::Hasher,
-    bytes: Vec<u8>,
-}
-
-/// Number of bytes gathered before the hash function is called, which is faster on large blocks.
-const GATHER_BYTES: usize = 128 * 1024;
-
-impl ConnectionHash {
-    /// Adds a communication point.
-    pub fn add(&mut self, simulation: &Simulation<'_>) {
-        self.bytes.extend_from_slice(&simulation.steps().to_le_bytes());
-        if simulation.steps() > 0 {
-            for value in simulation.delivered() {
-                self.bytes.extend_from_slice(&value.to_bits().to_le_bytes());
-            }
-        }
-        for value in simulation.sources() {
-            self.bytes.extend_from_slice(&value.to_bits().to_le_bytes());
-        }
-        if self.bytes.len() >= GATHER_BYTES {
-            self.hasher.update(&self.bytes);
-            self.bytes.clear();
-        }
-    }
-
-    /// Returns the hash, 64 hexadecimal digits.
-    #[must_use]
-    pub fn hex(mut self) -> String {
-        self.hasher.update(&self.bytes);
-        self.hasher.finalize().to_hex().to_string()
-    }
 }

@@ -3,8 +3,11 @@
 
 use super::convert::WireUnit;
 use super::faults::in_unit_of;
+use super::values::number_of;
 use octant_base::names::suggestion;
 use octant_faults::catalogue::Takes;
+use octant_fmu_host::description::VariableType;
+use octant_fmu_host::instance::whole;
 use octant_scenario::{FileProblems, Given, Problem, SystemRequirement};
 use octant_score::verdict::RequirementResult;
 use octant_verdict::verdict::LimitCheck;
@@ -28,6 +31,8 @@ pub struct NamedSignal {
     pub name: String,
     /// Unit, if it has one.
     pub unit: Option<WireUnit>,
+    /// Type.
+    pub kind: VariableType,
 }
 
 /// Requirements of a run, with the values of their signals so far.
@@ -41,6 +46,7 @@ struct Required {
     check: LimitCheck,
     /// Place of the signal among the recorded numbers.
     place: usize,
+    kind: VariableType,
     value: SignalValue,
     magnitude: bool,
     /// Value so far.
@@ -71,14 +77,14 @@ impl Requiring {
         self.all.is_empty()
     }
 
-    /// Takes the recorded numbers of a communication point.
+    /// Takes the recorded numbers of a communication point, as they are exchanged.
     pub fn look(&mut self, time_s: f64, numbers: &[f64]) {
         for one in &mut self.all {
             let Some(&number) = numbers.get(one.place) else { continue };
-            if number.is_nan() {
+            let Some(number) = number_of(one.kind, number).filter(|number| !number.is_nan()) else {
                 one.nan_s.get_or_insert(time_s);
                 continue;
-            }
+            };
             one.found = Some(match (one.value, one.found) {
                 (SignalValue::Max, Some(found)) => found.max(number),
                 (SignalValue::Min, Some(found)) => found.min(number),
@@ -109,6 +115,11 @@ impl Required {
         let LimitCheck { id, measure, comparison, limit, secant_latitude: _ } = self.check.clone();
         let found = self.found.map(|value| if self.magnitude { value.abs() } else { value });
         let (value, reason) = match (self.nan_s, found) {
+            (Some(nan_s), _) if whole::is_wide(self.kind) => {
+                let reason =
+                    format!("{measure}: it is beyond 2^53 at {nan_s} s, where limits aren't exact");
+                (None, Some(reason))
+            }
             (Some(nan_s), _) => (None, Some(format!("{measure}: it isn't a number at {nan_s} s"))),
             (None, None) => (None, Some(format!("{measure}: there is no value"))),
             (None, value) => (value, None),
@@ -183,6 +194,7 @@ fn required(one: &SystemRequirement, signals: &[NamedSignal]) -> Result<Required
             secant_latitude: false,
         },
         place,
+        kind: signals[place].kind,
         value,
         magnitude,
         found: None,

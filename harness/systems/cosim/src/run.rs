@@ -1,5 +1,7 @@
 //! Runs a system from its file to its results: `octant run FILE.ssp`.
 
+mod judge;
+
 use super::error::MasterError;
 use super::experiment::{GivenSettings, RunExperiment};
 use super::faults::{Faulting, looked_at};
@@ -7,7 +9,7 @@ use super::flat::Flat;
 use super::open::{OpenedSystem, is_exchange, open_all};
 use super::order::SteppingOrder;
 use super::parameters;
-use super::record::{ConnectionHash, RowError, RowRecorder, signals};
+use super::record::{RowError, RowRecorder, signals};
 use super::requirements::Requiring;
 use super::simulation::{Abilities, Simulation, SteppingSettings};
 use super::solve::IterationLimits;
@@ -15,21 +17,22 @@ use super::ssp::SspError;
 use super::ssp::annotation::TomlText;
 use super::ssp::package::Package;
 use super::ssp::structure::SystemStructure;
+use super::stream::SystemHash;
 use super::summary::{FmuResult, LoopResult, SCHEMA, SystemEnded, SystemSummary};
 use super::system::System;
 use super::tuning::{TunedResult, Tuning, tunings};
+use judge::judge;
 use octant_base::control::Control;
 use octant_base::failing::{Failing, FailureKind};
 use octant_fmu_bind::settings::Starts;
-use octant_fmu_host::instance::{Instance, ProcessPlace};
+use octant_fmu_host::instance::{Instance, OpenOptions, ProcessPlace};
 use octant_fmu_host::{OpenedFmu, description::Description};
 use octant_recorder::Event;
 use octant_scenario::{FileProblems, connection_faults, system_requirements, text_of};
-use octant_score::judge::NO_REQUIREMENT;
-use octant_score::summary::{FaultResult, results};
-use octant_score::verdict::RequirementResult;
+use octant_score::summary::results;
 use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Maximum number of rows of a recording, where the interval isn't given.
 pub const ROWS_MAX: u64 = 20_000;
@@ -63,10 +66,14 @@ pub struct Request {
     pub place: ProcessPlace,
     /// True to run FMUs that need the tools that made them.
     pub allow_tool: bool,
+    /// Longest time of a call in a process of its own, and of loading; `None`: the defaults.
+    pub time_limit: Option<Duration>,
     /// Number of steps between recorded rows.
     pub every: Option<u64>,
     /// True if the system must have requirements.
     pub require: bool,
+    /// Maximum number of values that are no numbers from outputs into inputs; `None`: any.
+    pub no_numbers_max: Option<u64>,
 }
 
 /// Reasons why a system can't be run at all.
@@ -126,8 +133,7 @@ impl PreparedSystem {
         let package = Package::open(&request.path)?;
         let structure = SystemStructure::read(&package)?;
         let flat = Flat::of(&structure)?;
-        let OpenedSystem { instances, fmus } =
-            open_all(&structure, &flat, request.place, request.allow_tool)?;
+        let OpenedSystem { instances, fmus } = open_all(&structure, &flat, &opening(&request))?;
         let described: Vec<&Description> = fmus.iter().map(|fmu| &**fmu.description()).collect();
         let experiment = RunExperiment::of(&request.said, &structure, &flat, &described)
             .map_err(|error| SspError::of_file(&structure.file, error.to_string()))?;
@@ -182,6 +188,7 @@ impl PreparedSystem {
             tolerance: None,
             loops: IterationLimits::default(),
             halvings: HALVINGS,
+            no_numbers_max: request.no_numbers_max,
         };
         Ok(Self {
             request,
@@ -288,9 +295,18 @@ impl PreparedSystem {
         let name = if self.structure.name.is_empty() { "system" } else { &self.structure.name };
         let mut recorder = RowRecorder::new(&system, &described, name, paths, every, requiring)
             .map_err(|error| PrepareError::Usage(error.to_string()))?;
-        let mut hash = ConnectionHash::default();
-        let kept = Kept { recorder: &mut recorder, hash: &mut hash, watch: &mut watch };
+        let times = (settings.start_s, settings.step_s);
+        let mut hash = SystemHash::new(&system, &described, &starts, times);
+        let described = &described[..];
+        let kept = Kept { recorder: &mut recorder, hash: &mut hash, watch: &mut watch, described };
         let ended = drive(&mut simulation, &system, &settings, kept, ended_by, control);
+        let mut warnings = self.warnings;
+        warnings.extend(simulation.no_numbers().map(|(wire, since_s)| {
+            format!(
+                "{} isn't a number, first at {since_s} s, and went into {}",
+                wire.source, wire.target
+            )
+        }));
         let mut messages: Vec<(String, String)> = Vec::new();
         let mut fmus = Vec::with_capacity(system.nodes.len());
         let ended = match (ended, simulation.terminate()) {
@@ -323,6 +339,8 @@ impl PreparedSystem {
                 refused: counts.refused,
                 messages: said.len(),
             });
+            let own = said.iter().filter(|message| message.is_of_host());
+            warnings.extend(own.map(|message| format!("{}: {}", component.name, message.text)));
             messages.extend(said.iter().map(|m| (component.name.clone(), m.to_string())));
         }
         let ended = match (ended, simulation.finish()) {
@@ -369,7 +387,7 @@ impl PreparedSystem {
                 tuned,
                 connections: system.wires.len(),
                 recorded_every: every,
-                warnings: self.warnings,
+                warnings,
                 stream_hash: hash.hex(),
             },
             messages,
@@ -389,8 +407,9 @@ pub struct Results {
 /// Receivers of every communication point.
 struct Kept<'a, W> {
     recorder: &'a mut RowRecorder,
-    hash: &'a mut ConnectionHash,
+    hash: &'a mut SystemHash,
     watch: &'a mut W,
+    described: &'a [&'a Description],
 }
 
 /// Steps to the end.
@@ -405,11 +424,12 @@ fn drive<W>(
 where
     W: FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
 {
-    let Kept { recorder, hash, watch } = kept;
+    let Kept { recorder, hash, watch, described } = kept;
     loop {
         let at_s = simulation.time_s(simulation.steps());
         let last = ended_by.is_some() || simulation.steps() == settings.steps;
-        hash.add(simulation);
+        simulation.read_written()?;
+        hash.add(simulation, described);
         watch(simulation, system)?;
         recorder.row(simulation, system, last)?;
         if let Some(node) = ended_by {
@@ -447,6 +467,18 @@ fn tell_faults(
     Ok(())
 }
 
+/// Options with which all FMUs are opened.
+fn opening(request: &Request) -> OpenOptions {
+    let default = OpenOptions::default();
+    OpenOptions {
+        place: request.place,
+        allow_tool: request.allow_tool,
+        start_limit: request.time_limit.unwrap_or(default.start_limit),
+        time_limit: request.time_limit.unwrap_or(default.time_limit),
+        ..default
+    }
+}
+
 /// Text of the file that the command line gives, else that of the structure.
 fn given_or(
     path: Option<&Path>,
@@ -456,45 +488,4 @@ fn given_or(
         Some(path) => Ok(Some(TomlText { file: path.display().to_string(), text: text_of(path)? })),
         None => Ok(ours.cloned()),
     }
-}
-
-/// Determines the verdict of a run, with its reasons.
-fn judge(
-    ended: &SystemEnded,
-    faults: &[FaultResult],
-    tuned: &[TunedResult],
-    (requirements, must_require): (&[RequirementResult], bool),
-) -> (Verdict, Vec<String>) {
-    let mut reasons = Vec::new();
-    let mut verdict = Verdict::None;
-    match ended {
-        SystemEnded::AtStop | SystemEnded::AskedByFmu { .. } => {}
-        SystemEnded::Interrupted { at_s } => {
-            verdict = Verdict::Inconclusive;
-            reasons.push(format!("interrupted at {at_s} s"));
-        }
-        SystemEnded::Failed { reason, .. } => {
-            verdict = Verdict::Error;
-            reasons.push(reason.clone());
-        }
-    }
-    for fault in faults.iter().filter(|fault| !fault.fired) {
-        verdict = verdict.worst(Verdict::Inconclusive);
-        reasons.push(fault.sentence());
-    }
-    for tuned in tuned.iter().filter(|tuned| !tuned.done) {
-        verdict = verdict.worst(Verdict::Inconclusive);
-        reasons.push(format!("{} never got {}", tuned.fmu, tuned.values.join(", ")));
-    }
-    let required = requirements.iter().fold(Verdict::None, |all, one| all.worst(one.verdict));
-    // A requirement that failed before an FMU did stays failed.
-    verdict = if required == Verdict::Fail { required } else { verdict.worst(required) };
-    reasons.extend(requirements.iter().filter_map(RequirementResult::told));
-    if requirements.is_empty() && must_require {
-        verdict = verdict.worst(Verdict::Inconclusive);
-        reasons.push("the system requires nothing, and --require wants it to".to_owned());
-    } else if requirements.is_empty() && verdict == Verdict::None {
-        reasons.push(NO_REQUIREMENT.to_owned());
-    }
-    (verdict, reasons)
 }

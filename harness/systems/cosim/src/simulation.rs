@@ -10,6 +10,8 @@
 //! again in halves. Values are transferred between the parts; faults don't advance until the step
 //! is complete.
 
+mod ends;
+mod refused;
 mod saved;
 mod settings;
 
@@ -18,8 +20,9 @@ pub use settings::{Abilities, EventCounts, SteppingSettings};
 use super::error::{MasterError, is_refusal};
 use super::faults::Faulting;
 use super::initialize::{Initializer, Loop};
-use super::system::{ExchangeSide, System};
+use super::system::{ExchangeSide, NumberPath, System};
 use super::tuning::{TunedResult, Tuning};
+use super::values::{carried, number_of};
 use octant_faults::connection::ConnectionStation;
 use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome, Stepped};
 
@@ -59,6 +62,12 @@ pub struct Simulation<'a> {
     /// Number of parts of steps that were repeated.
     rejected: u64,
     loops: Vec<Loop>,
+    /// First time at which each wire's output was no number.
+    no_number_since_s: Vec<Option<f64>>,
+    /// Values that were no numbers on all wires so far.
+    no_numbers: u64,
+    /// Outputs that are texts, and bytes as hexadecimal digits, in the order of the FMUs.
+    written: Vec<String>,
 }
 
 /// Result of an attempt at a step, or at a part of one.
@@ -82,6 +91,10 @@ impl<'a> Simulation<'a> {
         let numbers = |side: fn(&super::system::SystemNode) -> &ExchangeSide| -> Vec<Vec<f64>> {
             nodes.iter().map(|node| vec![0.0; side(node).plan.elements]).collect()
         };
+        let read = |node: &super::system::SystemNode| {
+            vec![0.0; node.outputs.plan.elements + node.watched.plan.elements]
+        };
+        let outputs: Vec<Vec<f64>> = nodes.iter().map(read).collect();
         let mut into = vec![Vec::new(); nodes.len()];
         for (number, wire) in system.wires.iter().enumerate() {
             into[wire.to.node].push(number);
@@ -92,8 +105,8 @@ impl<'a> Simulation<'a> {
         let able = |of: fn(&Abilities) -> bool| abilities.iter().all(of);
         Self {
             inputs: numbers(|node| &node.inputs),
-            outputs: numbers(|node| &node.outputs),
-            before: numbers(|node| &node.outputs),
+            before: outputs.clone(),
+            outputs,
             into,
             faulted: (0..wires).map(has_fault).collect(),
             transferred: vec![0; wires],
@@ -108,6 +121,9 @@ impl<'a> Simulation<'a> {
             counts: vec![EventCounts::default(); nodes.len()],
             rejected: 0,
             loops: Vec::new(),
+            no_number_since_s: vec![None; wires],
+            no_numbers: 0,
+            written: Vec::new(),
             system,
             settings,
             instances,
@@ -145,12 +161,26 @@ impl<'a> Simulation<'a> {
     /// Returns the numbers of the connected outputs of an FMU.
     #[must_use]
     pub fn outputs(&self, node: usize) -> &[f64] {
-        &self.outputs[node]
+        &self.outputs[node][..self.system.nodes[node].outputs.plan.elements]
     }
 
-    /// Returns the values of the connected outputs in the order of the wires.
-    pub fn sources(&self) -> impl Iterator<Item = f64> + '_ {
-        self.system.wires.iter().map(|wire| self.outputs[wire.from.node][wire.from.place])
+    /// Returns the numbers of the unconnected outputs of an FMU.
+    #[must_use]
+    pub fn watched(&self, node: usize) -> &[f64] {
+        &self.outputs[node][self.system.nodes[node].outputs.plan.elements..]
+    }
+
+    /// Returns the outputs that are texts, and bytes as hexadecimal digits, as they were read last, in
+    /// the order of the FMUs.
+    #[must_use]
+    pub fn written(&self) -> &[String] {
+        &self.written
+    }
+
+    /// Returns the outputs that were no numbers and went into inputs: the wire, and the first time, s.
+    pub fn no_numbers(&self) -> impl Iterator<Item = (&NumberPath, f64)> {
+        let since = self.system.wires.iter().zip(&self.no_number_since_s);
+        since.filter_map(|(wire, since_s)| Some((wire, (*since_s)?)))
     }
 
     /// Returns the loops that were found in the initialization.
@@ -179,6 +209,11 @@ impl<'a> Simulation<'a> {
     /// Returns the changes of parameters.
     pub fn tunings(&self) -> impl Iterator<Item = &TunedResult> {
         self.tunings.iter().map(|tuning| &tuning.told)
+    }
+
+    /// Returns the changes of parameters with their values.
+    pub(super) fn changes(&self) -> &[Tuning] {
+        &self.tunings
     }
 
     /// Returns the faults.
@@ -226,7 +261,7 @@ impl<'a> Simulation<'a> {
             }
         }
         for node in 0..self.instances.len() {
-            let groups = &self.system.nodes[node].outputs.plan.groups;
+            let groups = &self.system.nodes[node].read;
             let mut rest = self.outputs[node].as_mut_slice();
             for group in groups {
                 let (these, others) = rest.split_at_mut(group.elements);
@@ -343,12 +378,34 @@ impl<'a> Simulation<'a> {
         for number in &self.into[node] {
             let wire = &self.system.wires[*number];
             let value = self.outputs[wire.from.node][wire.from.place];
+            if wire.is_real && value.is_nan() {
+                let since_s = self.no_number_since_s[*number].get_or_insert(time_s);
+                self.no_numbers += 1;
+                if self.settings.no_numbers_max.is_some_and(|max| self.no_numbers > max) {
+                    return Err(MasterError::NoNumber {
+                        source_name: wire.source.clone(),
+                        target: wire.target.clone(),
+                        since_s: *since_s,
+                        found: self.no_numbers,
+                        max: self.settings.no_numbers_max.unwrap_or(0),
+                    });
+                }
+            }
             let mut value = wire.convert(value, time_s)?;
             let again = std::mem::replace(&mut self.transferred[*number], self.step) == self.step;
             if self.faulted[*number]
                 && let Some(faulting) = &mut self.faulting
             {
-                value = faulting.station.transfer(*number, value, again);
+                // Faults act on numbers. A value that none alters keeps its bits.
+                let kind = wire.conversion.kind();
+                let Some(before) = number_of(kind, value) else {
+                    return Err(wire.beyond_faults(value, time_s));
+                };
+                let after = faulting.station.transfer(*number, before, again);
+                if after.to_bits() != before.to_bits() {
+                    let altered = carried(kind, after);
+                    value = altered.ok_or_else(|| wire.beyond_faults(value, time_s))?;
+                }
             }
             if !again {
                 self.delivered[*number] = value;
@@ -388,7 +445,7 @@ impl<'a> Simulation<'a> {
         length_s: f64,
     ) -> Result<Stepped, MasterError> {
         let sides = &self.system.nodes[node];
-        let (set, get) = (&sides.inputs.plan.groups, &sides.outputs.plan.groups);
+        let (set, get) = (&sides.inputs.plan.groups, &sides.read);
         let (inputs, outputs) = (&self.inputs[node], &mut self.outputs[node]);
         let instance = &mut self.instances[node];
         match instance.exchange(set, inputs, time_s, length_s, get, outputs) {
@@ -402,97 +459,5 @@ impl<'a> Simulation<'a> {
             }
             Err(error) => Err(self.failed(node, time_s)(error)),
         }
-    }
-
-    /// Finds out which inputs an FMU refused. An input that a fault has altered keeps its previous
-    /// value.
-    #[cold]
-    fn set_one_by_one(&mut self, node: usize, time_s: f64) -> Result<(), MasterError> {
-        let side = &self.system.nodes[node].inputs;
-        for (number, range) in side.variables.iter().zip(&side.plan.places) {
-            let instance = &mut self.instances[node];
-            let description = instance.description();
-            let group = octant_fmu_host::instance::VariableGroup::of(
-                description,
-                &description.variables[*number],
-            );
-            let set =
-                group.and_then(|group| instance.set(&group, &self.inputs[node][range.clone()]));
-            let error = match set {
-                Ok(()) => continue,
-                Err(error) if is_refusal(&error) => error,
-                Err(error) => return Err(self.failed(node, time_s)(error)),
-            };
-            let wires = self.into[node]
-                .iter()
-                .filter(|wire| range.contains(&self.system.wires[**wire].to.place));
-            let wires: Vec<usize> = wires.copied().collect();
-            let acts = |wire: &&usize| {
-                self.faulting.as_ref().is_some_and(|faulting| faulting.station.acts_on(**wire))
-            };
-            if wires.iter().any(|wire| acts(&wire)) {
-                self.counts[node].refused += 1;
-                continue;
-            }
-            let said = match error {
-                InstanceError::Failed { said, .. } => said,
-                _ => String::new(),
-            };
-            let wire = wires.first().map(|wire| &self.system.wires[*wire]);
-            return Err(MasterError::Refused {
-                target: wire.map_or_else(String::new, |wire| wire.target.clone()),
-                value: wire.map_or(f64::NAN, |wire| self.inputs[node][wire.to.place]),
-                time_s,
-                said,
-            });
-        }
-        Ok(())
-    }
-
-    /// Reads the unconnected outputs of an FMU.
-    ///
-    /// # Errors
-    /// If it fails.
-    pub fn watched(&mut self, node: usize, numbers: &mut [f64]) -> Result<(), MasterError> {
-        let time_s = self.time_s(self.step);
-        let mut rest = numbers;
-        for group in &self.system.nodes[node].watched.plan.groups {
-            let (these, others) = rest.split_at_mut(group.elements);
-            self.instances[node].get(group, these).map_err(self.failed(node, time_s))?;
-            rest = others;
-        }
-        Ok(())
-    }
-
-    /// Terminates all FMUs in order.
-    ///
-    /// # Errors
-    /// If one fails; the others are terminated all the same.
-    pub fn terminate(&mut self) -> Result<(), MasterError> {
-        let time_s = self.time_s(self.step);
-        let mut first = Ok(());
-        for node in 0..self.instances.len() {
-            let ended = self.instances[node].terminate().map_err(self.failed(node, time_s));
-            if first.is_ok() {
-                first = ended;
-            }
-        }
-        first
-    }
-
-    /// Frees all FMUs and unloads their libraries; returns the first failure.
-    ///
-    /// # Errors
-    /// If an FMU crashes or hangs on the way.
-    pub fn finish(&mut self) -> Result<(), MasterError> {
-        let time_s = self.time_s(self.step);
-        let mut first = Ok(());
-        for node in 0..self.instances.len() {
-            let ended = self.instances[node].finish().map_err(self.failed(node, time_s));
-            if first.is_ok() {
-                first = ended;
-            }
-        }
-        first
     }
 }

@@ -58,7 +58,7 @@ pub struct SystemSummary {
     pub recorded_every: u64,
     /// Warnings.
     pub warnings: Vec<String>,
-    /// BLAKE3 over the values on the connections: see [`super::record::ConnectionHash`].
+    /// BLAKE3 over all recorded inputs, outputs and parameters: see [`super::stream::SystemHash`].
     pub stream_hash: String,
 }
 

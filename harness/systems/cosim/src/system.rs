@@ -9,7 +9,7 @@ use super::flat::{Flat, FlatComponent, FlatWire, FmuConnector};
 use super::references;
 use super::ssp::SspError;
 use super::ssp::structure::{Connector, ConnectorKind, SystemStructure};
-use super::values::{is_numeric, kind_name};
+use super::values::{is_float, is_numeric, kind_name};
 use octant_fmu_host::description::{Causality, Description, Variability, Variable, VariableType};
 use octant_fmu_host::instance::{AccessPlan, InstanceError, VariableGroup};
 
@@ -39,9 +39,15 @@ pub struct SystemNode {
     pub outputs: ExchangeSide,
     /// Unconnected outputs that are only recorded.
     pub watched: ExchangeSide,
+    /// Groups of all outputs that are numbers, the connected ones first: they are read with every
+    /// step.
+    pub read: Vec<VariableGroup>,
+    /// Outputs that are texts or bytes, with their indices in the description.
+    pub written: Vec<(usize, VariableGroup)>,
 }
 
-/// Variables of an FMU that are exchanged together, and the places of their numbers.
+/// Variables of an FMU that are exchanged together, whole numbers of 64 bits as their bits, and the
+/// places of their numbers.
 #[derive(Clone, Debug, Default)]
 pub struct ExchangeSide {
     /// Indices of the variables in the description.
@@ -68,6 +74,8 @@ pub struct NumberPath {
     pub to: Spot,
     /// Conversion on the way.
     pub conversion: WireConversion,
+    /// True if the output is a floating-point number, which may be none (NaN).
+    pub is_real: bool,
     /// Name of the output: `plant.imu.valid`, with the element of an array: `plant.x[2]`.
     pub source: String,
     /// Name of the input.
@@ -144,12 +152,28 @@ impl System {
                 ExchangeSide::new(description, variables)
                     .map_err(|error| builder.of_component(component, error.to_string()))
             };
+            let (outputs, watched) = (side(outputs)?, side(watched)?);
+            let read = [&outputs, &watched].map(|side| side.plan.groups.clone()).concat();
+            let written = description.variables.iter().enumerate().filter(|(_, variable)| {
+                // Clocked texts have values at the ticks of their clock alone.
+                variable.causality == Causality::Output
+                    && matches!(variable.kind, VariableType::String | VariableType::Binary)
+                    && variable.clocks.is_empty()
+            });
+            let written = written.map(|(number, variable)| {
+                VariableGroup::of(description, variable).map(|group| (number, group))
+            });
+            let written = written
+                .collect::<Result<_, InstanceError>>()
+                .map_err(|error| builder.of_component(component, error.to_string()))?;
             nodes.push(SystemNode {
                 name: component.name.clone(),
                 inputs: side(inputs)?,
                 fixed: side(fixed)?,
-                outputs: side(outputs)?,
-                watched: side(watched)?,
+                outputs,
+                watched,
+                read,
+                written,
             });
         }
         let mut system = Self { nodes, wires: Vec::new(), fixed: Vec::new(), texts: Vec::new() };
@@ -188,7 +212,7 @@ impl ExchangeSide {
     pub fn new(description: &Description, variables: Vec<usize>) -> Result<Self, InstanceError> {
         let list: Vec<&Variable> =
             variables.iter().map(|number| &description.variables[*number]).collect();
-        let plan = AccessPlan::new(description, &list)?;
+        let plan = AccessPlan::exactly(description, &list)?;
         Ok(Self { variables, plan })
     }
 
@@ -380,6 +404,7 @@ impl<'a> Builder<'a> {
                 from: Spot { node: a_node, place: out + from.first + element },
                 to: Spot { node: b_node, place: into + to.first + element },
                 conversion: conversion.clone(),
+                is_real: is_float(from.variable.kind),
                 source: name(&wire.from, &from),
                 target: name(&wire.to, &to),
                 unit: b.unit.clone(),

@@ -23,7 +23,7 @@ pub struct Tuning {
     pub(super) point: u64,
     /// Index of the FMU.
     pub(super) node: usize,
-    values: Starts,
+    pub(super) values: Starts,
     /// The arguments as they were given.
     pub(super) told: TunedResult,
 }

@@ -1,6 +1,7 @@
 //! Values passed between variables of different types.
 
 use octant_fmu_host::description::VariableType;
+use octant_fmu_host::instance::whole;
 
 /// Returns the name of a type.
 #[must_use]
@@ -36,7 +37,7 @@ pub const fn is_numeric(kind: VariableType) -> bool {
     !matches!(kind, VariableType::String | VariableType::Binary | VariableType::Clock)
 }
 
-/// Bound up to which whole numbers are exact in f64, the type in which they are passed.
+/// Bound up to which whole numbers are exact in f64, the type in which faults act.
 const EXACT: f64 = (1u64 << 53) as f64;
 
 /// Returns the smallest and the largest value of a whole-number type (as far as they are exact);
@@ -55,6 +56,38 @@ pub const fn limits(kind: VariableType) -> Option<(f64, f64)> {
         VariableType::Boolean => (0.0, 1.0),
         _ => return None,
     })
+}
+
+/// Returns whether a whole-number type has a number.
+#[must_use]
+pub fn has(kind: VariableType, whole: i128) -> bool {
+    match kind {
+        VariableType::Int64 | VariableType::Enumeration => i64::try_from(whole).is_ok(),
+        VariableType::UInt64 => u64::try_from(whole).is_ok(),
+        _ => limits(kind).is_some_and(|(from, to)| (from as i128..=to as i128).contains(&whole)),
+    }
+}
+
+/// Returns a value as it is exchanged as a number; `None` where the bits of a whole number are
+/// exchanged that f64 doesn't have.
+#[must_use]
+pub fn number_of(kind: VariableType, value: f64) -> Option<f64> {
+    if whole::is_wide(kind) { whole::exact(whole::from_bits(kind, value)) } else { Some(value) }
+}
+
+/// Returns a number as it is exchanged; `None` if the type doesn't have it.
+#[must_use]
+pub fn carried(kind: VariableType, number: f64) -> Option<f64> {
+    if whole::is_wide(kind) { whole::to_bits(kind, whole::of(number)?) } else { Some(number) }
+}
+
+/// Returns a value as it is exchanged in words.
+#[must_use]
+pub fn told(kind: VariableType, value: f64) -> String {
+    if whole::is_wide(kind) {
+        return whole::from_bits(kind, value).to_string();
+    }
+    value.to_string()
 }
 
 /// Returns whether a type has a value without rounding. Every f64 fits Float32, by rounding.

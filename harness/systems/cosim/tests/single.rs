@@ -93,7 +93,7 @@ const INPUTS: &str = "time,u [cm],h [deg/s],on,w[2]\n0,0,180,0,7\n1,100,180,1,7\
 
 #[test]
 fn what_is_continuous_is_interpolated_and_everything_else_held() {
-    let span = Span { start_s: 0.0, stop_s: 2.0, step_s: 0.25, tolerance: None };
+    let span = Span { start_s: 0.0, stop_s: 2.0, step_s: 0.25, tolerance: None, splits: true };
     let numbers = ["y", "held", "n", "was_on", "m"];
     let (finished, csv) = run(INPUTS, &numbers, span, "out.csv");
     assert_eq!((finished.steps, finished.time_s, finished.terminated), (8, 2.0, false));
@@ -119,7 +119,7 @@ fn what_is_continuous_is_interpolated_and_everything_else_held() {
 
 #[test]
 fn some_outputs_and_a_last_step_that_is_shorter() {
-    let span = Span { start_s: 0.5, stop_s: 1.25, step_s: 0.5, tolerance: None };
+    let span = Span { start_s: 0.5, stop_s: 1.25, step_s: 0.5, tolerance: None, splits: true };
     let (finished, csv) = run(INPUTS, &["n", "m", "y"], span, "out.csv");
     assert_eq!((finished.steps, finished.time_s), (2, 1.25));
     let text = String::from_utf8(csv).unwrap();
@@ -143,7 +143,7 @@ fn some_outputs_and_a_last_step_that_is_shorter() {
 
 #[test]
 fn rows_of_mcap_are_json_with_a_schema() {
-    let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.5, tolerance: None };
+    let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.5, tolerance: None, splits: true };
     let (_, bytes) = run(INPUTS, &["y", "was_on", "m[2]"], span, "out.mcap");
     let messages: Vec<_> =
         mcap::MessageStream::new(&bytes).unwrap().map(|message| message.unwrap()).collect();
@@ -162,7 +162,7 @@ fn rows_of_mcap_are_json_with_a_schema() {
 /// A text between quotes with its own doubled (RFC 4180), bytes as digits; in a row of JSON as strings.
 #[test]
 fn texts_and_bytes_are_recorded_beside_numbers() {
-    let span = Span { start_s: 0.0, stop_s: 0.5, step_s: 0.5, tolerance: None };
+    let span = Span { start_s: 0.0, stop_s: 0.5, step_s: 0.5, tolerance: None, splits: true };
     let (_, csv) = run(INPUTS, &["bytes", "n", "words"], span, "out.csv");
     let mut table = csv::Reader::from_reader(csv.as_slice());
     assert_eq!(table.headers().unwrap(), vec!["time", "bytes", "n", "words"]);
@@ -266,7 +266,9 @@ fn mistakes_in_inputs_have_file_line_and_column() {
 
 #[test]
 fn spans_that_contradict_themselves_are_refused() {
-    let steps = |start_s, stop_s, step_s| Span { start_s, stop_s, step_s, tolerance: None }.steps();
+    let steps = |start_s, stop_s, step_s| {
+        Span { start_s, stop_s, step_s, tolerance: None, splits: true }.steps()
+    };
     assert_eq!(steps(0.0, 10.0, 0.005), Ok(2000));
     assert_eq!(steps(0.1, 0.4, 0.1), Ok(3), "no step of rounding");
     assert_eq!(steps(0.0, 1.0, 0.3), Ok(4));
@@ -299,7 +301,7 @@ fn an_fmu_that_ends_or_fails_leaves_its_rows() {
                     if time_s > 0.25 { behaviour.clone() } else { Ok(true) }
                 },
             );
-        let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.1, tolerance: None };
+        let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.1, tolerance: None, splits: true };
         let control = Control::default();
         let starts = Starts::default();
         let finished =
@@ -317,7 +319,7 @@ fn an_fmu_that_ends_or_fails_leaves_its_rows() {
 /// A tunable parameter is a column as an input is; the others of its array aren't known.
 #[test]
 fn tunable_parameters_are_held_from_their_row_on() {
-    let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.25, tolerance: None };
+    let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.25, tolerance: None, splits: true };
     let (_, csv) = run("time,t[1],t[2]\n0,9,1\n0.5,9,2\n", &["y"], span, "out.csv");
     let text = String::from_utf8(csv).unwrap();
     let rows: Vec<&str> = text.lines().skip(2).collect();

@@ -372,3 +372,111 @@ fn what_other_tools_write_is_read_with_a_warning_each() {
         assert!(warning.contains("SystemStructure.ssd:"), "{warning}");
     }
 }
+
+#[test]
+fn the_step_of_omsimulator_is_read() {
+    let of = |master: &str, around: &str| {
+        let (open, close) = match around {
+            "" => (String::new(), String::new()),
+            name => (format!("<{name}>"), format!("</{name}>")),
+        };
+        let structure = format!(
+            r#"<System name="s" xmlns:oms="https://example.org/oms.xsd"><Elements>{}</Elements>
+               <Annotations><ssc:Annotation type="org.openmodelica">{open}
+               <oms:SimulationInformation>{master}</oms:SimulationInformation>{close}
+               </ssc:Annotation></Annotations></System>"#,
+            component("a", OUT, "")
+        );
+        let (structure, _) = read(&structure, &[]).unwrap();
+        (structure.others_step_s, structure.warnings)
+    };
+    let fixed = r#"<oms:FixedStepMaster description="oms-ma" stepSize="0.02"/>"#;
+    assert_eq!(of(fixed, "oms:Annotations"), (Some(0.02), Vec::new()));
+    // As older versions write it.
+    let old = r#"<FixedStepMaster description="oms-ma" stepSize="0.001000"/>"#;
+    assert_eq!(of(old, "").0, Some(0.001));
+    let solver = r#"<oms:VariableStepSolver description="cvode" maximumStepSize="0.1"/>"#;
+    let (step_s, warnings) = of(solver, "oms:Annotations");
+    assert_eq!((step_s, warnings.len()), (Some(0.1), 1));
+    assert!(warnings[0].contains("varies its step up to 0.1 s"), "{warnings:?}");
+}
+
+#[test]
+fn a_prefix_that_is_not_declared_is_the_usual_one() {
+    let set = r#"<ssv:ParameterSet version="1.0" name="p">
+        <ssv:Parameters><ssv:Parameter name="p"><ssv:Real value="2"/></ssv:Parameter></ssv:Parameters>
+        </ssv:ParameterSet>"#;
+    let bound = r#"<ParameterBindings><ParameterBinding source="p.ssv"/></ParameterBindings>"#;
+    let structure =
+        format!(r#"<System name="s"><Elements>{}</Elements></System>"#, component("a", OUT, bound));
+    let (structure, flat) = read(&structure, &[("p.ssv", set)]).unwrap();
+    assert_eq!(flat.components[0].parameters[0].value.numbers, [2.0]);
+    assert_eq!(structure.warnings.len(), 1);
+    let found = &structure.warnings[0];
+    assert!(
+        found.contains("p.ssv:1") && found.contains("the prefix ssv isn't declared"),
+        "{found}"
+    );
+}
+
+#[test]
+fn units_of_the_structure_are_those_of_its_inline_parameters() {
+    let inline = r#"<ParameterBindings><ParameterBinding><ParameterValues>
+        <ssv:ParameterSet version="1.0" name="p"><ssv:Parameters>
+        <ssv:Parameter name="p"><ssv:Real value="1" unit="furlong"/></ssv:Parameter>
+        </ssv:Parameters></ssv:ParameterSet>
+        </ParameterValues></ParameterBinding></ParameterBindings>"#;
+    let structure = format!(
+        r#"<System name="s"><Elements>{}</Elements></System>
+           <Units><ssc:Unit name="furlong"><ssc:BaseUnit m="1" factor="201.168"/></ssc:Unit></Units>"#,
+        component("a", OUT, inline)
+    );
+    let (structure, flat) = read(&structure, &[]).unwrap();
+    let unit = flat.components[0].parameters[0].value.unit.clone().unwrap();
+    assert_eq!((unit.0.as_str(), unit.1.factor), ("furlong", 201.168));
+    assert!(structure.warnings.is_empty(), "{:?}", structure.warnings);
+}
+
+#[test]
+fn a_component_may_be_a_structure_of_its_own() {
+    let inner = |unit: &str| {
+        format!(
+            r#"{HEAD}<System name="whatever"><Connectors>
+               <Connector name="angle" kind="output"/></Connectors>
+               <Elements>{}</Elements><Connections>
+               <Connection startElement="b" startConnector="y" endConnector="angle"/>
+               </Connections></System>
+               <Units><ssc:Unit name="turn"><ssc:BaseUnit {unit}/></ssc:Unit></Units>
+               </SystemStructureDescription>"#,
+            component("b", OUT, "")
+        )
+    };
+    let outer = |connector: &str| {
+        format!(
+            r#"<System name="s"><Elements>{}
+               <Component name="part" type="application/x-ssp-definition" source="part.ssd">
+               <Connectors><Connector name="{connector}" kind="output"/></Connectors></Component>
+               </Elements><Connections>
+               <Connection startElement="part" startConnector="angle" endElement="a" endConnector="u"/>
+               </Connections></System>
+               <Units><ssc:Unit name="turn"><ssc:BaseUnit rad="1" factor="6.25"/></ssc:Unit></Units>"#,
+            component("a", IN, "")
+        )
+    };
+    let good = inner(r#"rad="1" factor="6.25""#);
+    let (_, flat) = read(&outer("angle"), &[("part.ssd", &good)]).unwrap();
+    let names: Vec<&str> = flat.components.iter().map(|one| one.name.as_str()).collect();
+    assert_eq!(names, ["a", "part.b"]);
+    assert_eq!((flat.wires[0].from.connector.as_str(), flat.wires.len()), ("y", 1));
+    for (structure, part, expected) in [
+        (
+            outer("angel"),
+            &good,
+            "it has the connector \"angel\", which the system in part.ssd doesn't",
+        ),
+        (outer("angle"), &inner(r#"rad="1""#), "the unit \"turn\" has another meaning"),
+    ] {
+        let error = read(&structure, &[("part.ssd", part)]).unwrap_err();
+        assert!(error.contains(expected), "{error}");
+    }
+}

@@ -3,6 +3,30 @@
 use octant_cosim::ssp::package::{Package, STRUCTURE};
 
 #[test]
+fn a_loose_structure_has_the_files_around_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["system", "models"] {
+        std::fs::create_dir(folder.path().join(name)).unwrap();
+    }
+    std::fs::write(folder.path().join("models/plant.fmu"), "x").unwrap();
+    let structure = folder.path().join("system/loop.ssd");
+    std::fs::write(&structure, "<x/>").unwrap();
+    let package = Package::open(&structure).unwrap();
+    let found = package.resolve("../models/plant.fmu").unwrap();
+    assert!(found.is_file(), "{}", found.display());
+    // A name in a message is that of a file.
+    assert!(std::path::Path::new(&package.name_of(&found)).is_file());
+    let beside = folder.path().join("system/values.ssv");
+    std::fs::write(&beside, "<x/>").unwrap();
+    assert_eq!(
+        package.name_of(&package.resolve("values.ssv").unwrap()),
+        beside.display().to_string()
+    );
+    let error = package.resolve("../models/absent.fmu").unwrap_err().to_string();
+    assert!(error.contains("there is none of this name"), "{error}");
+}
+
+#[test]
 fn sources_stay_within_the_package() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("resources")).unwrap();

@@ -5,8 +5,9 @@ use octant_base::control::Control;
 use octant_cosim::run::{PreparedSystem, Request, Results};
 use octant_cosim::summary::SystemEnded;
 use octant_cosim::system::element_names;
+use octant_cosim::values::number_of;
 use octant_fmu_build::{Options, build};
-use octant_fmu_host::description::{Description, read_bytes};
+use octant_fmu_host::description::{Description, VariableType, read_bytes};
 use octant_fmu_host::instance::ProcessPlace;
 use octant_recorder::StreamHash;
 use octant_run::{StreamKeeping, run_method};
@@ -56,6 +57,7 @@ fn run(request: Request) -> Results {
 struct Names {
     node: usize,
     at: BTreeMap<String, usize>,
+    kinds: Vec<VariableType>,
     numbers: Vec<f64>,
 }
 
@@ -88,6 +90,7 @@ fn stream_hash(request: Request, fmus: [&str; 2]) -> (String, Results) {
                 let node = system.nodes.iter().position(|node| node.name == "calibrator").unwrap();
                 let sides = &system.nodes[node];
                 let mut at = BTreeMap::new();
+                let mut kinds = BTreeMap::new();
                 for side in [&sides.inputs, &sides.outputs, &sides.watched] {
                     // Names are in the order of the variables, numbers in that of the groups.
                     let first = at.len();
@@ -96,16 +99,21 @@ fn stream_hash(request: Request, fmus: [&str; 2]) -> (String, Results) {
                         let names = element_names(&descriptions[node], variable);
                         for (name, place) in names.into_iter().zip(range.clone()) {
                             at.insert(name, first + place);
+                            kinds.insert(first + place, variable.kind);
                         }
                     }
                 }
-                Names { node, numbers: vec![0.0; at.len()], at }
+                let kinds = kinds.into_values().collect();
+                Names { node, numbers: vec![0.0; at.len()], kinds, at }
             });
             let sides = &system.nodes[names.node];
             let [inputs, outputs] = [&sides.inputs, &sides.outputs].map(|s| s.plan.elements);
             names.numbers[..inputs].copy_from_slice(simulation.inputs(names.node));
             names.numbers[inputs..][..outputs].copy_from_slice(simulation.outputs(names.node));
-            simulation.watched(names.node, &mut names.numbers[inputs + outputs..])?;
+            names.numbers[inputs + outputs..].copy_from_slice(simulation.watched(names.node));
+            for (number, kind) in names.numbers.iter_mut().zip(&names.kinds) {
+                *number = number_of(*kind, *number).unwrap();
+            }
             if simulation.steps() == 0 || names.real("imu.valid") == 0.0 {
                 return Ok(());
             }

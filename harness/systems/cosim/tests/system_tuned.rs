@@ -4,6 +4,8 @@ use super::system::{built, request, with_arrays};
 use octant_base::control::Control;
 use octant_cosim::run::{PreparedSystem, Request};
 use octant_cosim::summary::{SystemEnded, SystemSummary};
+use octant_cosim::values::number_of;
+use octant_fmu_host::description::VariableType;
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_verdict::Verdict;
 use std::path::Path;
@@ -15,7 +17,13 @@ fn run(request: Request) -> (Vec<Vec<u64>>, SystemSummary) {
     let results = prepared
         .run_watched(&[], &Control::default(), |simulation, system| {
             let node = system.nodes.iter().position(|node| node.name == "calibrator").unwrap();
-            rows.push(simulation.inputs(node).iter().map(|value| value.to_bits()).collect());
+            // As numbers, so that whole numbers of both standards are alike.
+            let groups = &system.nodes[node].inputs.plan.groups;
+            let kinds = groups.iter().flat_map(|group| vec![group.kind; group.elements]);
+            let number = |(kind, value): (VariableType, &f64)| number_of(kind, *value).unwrap();
+            rows.push(
+                kinds.zip(simulation.inputs(node)).map(|one| number(one).to_bits()).collect(),
+            );
             Ok(())
         })
         .unwrap_or_else(|error| panic!("{error}"));

@@ -90,6 +90,7 @@ impl Bench {
             tolerance: None,
             loops: IterationLimits::default(),
             halvings: 0,
+            no_numbers_max: None,
         };
         let abilities = vec![Abilities::default(); 2];
         let mut simulation = Simulation::new(&self.system, &settings, instances, abilities, None);

@@ -49,6 +49,8 @@ struct Long {
     periods: u64,
     end_s: f64,
     early_return_allowed: bool,
+    /// False for a model whose outputs belong to the whole step.
+    returns_at_events: bool,
     callback: Option<IntermediateUpdate>,
     environment: Environment,
 }
@@ -60,7 +62,7 @@ pub(super) fn do_step(handle: *mut c_void, time_s: f64, step_s: f64, places: &Pl
         places.check()?;
         let agreed = instance.agree(time_s, step_s)?;
         if agreed.periods == 1 {
-            let event = instance.step_period()?;
+            let event = instance.step_period(true)?;
             places.fill(instance, event, false)?;
         } else if agreed.periods == 0 {
             let event = instance.step_to(time_s + step_s);
@@ -70,6 +72,7 @@ pub(super) fn do_step(handle: *mut c_void, time_s: f64, step_s: f64, places: &Pl
                 periods: agreed.periods,
                 end_s: time_s + step_s,
                 early_return_allowed: instance.options.early_return_allowed,
+                returns_at_events: !instance.model().sums_periods,
                 callback: instance.options.intermediate_update,
                 environment: instance.outlet.environment,
             });
@@ -127,7 +130,7 @@ fn step_long(handle: *mut c_void, long: &Long, places: &Places) -> Status {
             break;
         }
         let period_s = (long.end_s - last.time_s) / (long.periods - done) as f64;
-        let event = last.event && long.early_return_allowed;
+        let event = last.event && long.early_return_allowed && long.returns_at_events;
         if event || last.time_s + 0.5 * period_s > until_s {
             break;
         }
@@ -145,7 +148,7 @@ fn step_within(
     done: u64,
     within: bool,
 ) -> Result<Period, Refusal> {
-    let event = match instance.step_period() {
+    let event = match instance.step_period(done == 0) {
         Ok(event) => event,
         // The step was begun and can't be undone.
         Err(refusal) if done > 0 && refusal.status == DISCARD => {

@@ -7,7 +7,7 @@ use octant_evidence::manifest::shell_line;
 use octant_statistics::sample::ConfidenceInterval;
 
 /// Sections of the page: anchor and heading.
-pub(super) const SECTIONS: [(&str, &str); 11] = [
+pub(super) const SECTIONS: [(&str, &str); 12] = [
     ("requirements", "Requirements"),
     ("drift", "Drift"),
     ("envelopes", "Errors over time"),

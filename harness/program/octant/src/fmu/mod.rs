@@ -7,6 +7,8 @@ mod host;
 mod run;
 mod run_source;
 
+pub(crate) use run::time_limit_of;
+
 use crate::failure::Failure;
 use crate::given::GivenOptions;
 use clap::{Args, Subcommand};

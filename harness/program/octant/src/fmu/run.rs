@@ -44,6 +44,7 @@ struct RunSummary {
     terminated: bool,
     interrupted: bool,
     wall_s: f64,
+    notes: Vec<String>,
     outputs: Vec<String>,
     left_out: Vec<String>,
     out: Option<PathBuf>,
@@ -152,7 +153,7 @@ pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Ver
 }
 
 /// Reads the limit of `--time-limit`.
-fn time_limit(text: &str) -> Result<Duration, Failure> {
+pub(crate) fn time_limit_of(text: &str) -> Result<Duration, Failure> {
     let limit = Duration::try_from_secs_f64(seconds("--time-limit", text)?);
     limit.ok().filter(|limit| !limit.is_zero()).ok_or_else(|| {
         Failure::input(format!("--time-limit: found {text:?}, expected a time above 0"))
@@ -164,7 +165,7 @@ fn open(fmu: &Path, opening: &OpeningArguments) -> Result<Box<dyn Instance>, Fai
     let default = OpenOptions::default();
     let (start_limit, time_limit) = match limit {
         Some(text) => {
-            let limit = time_limit(text)?;
+            let limit = time_limit_of(text)?;
             (limit, limit)
         }
         None => (default.start_limit, default.time_limit),
@@ -186,7 +187,14 @@ fn open(fmu: &Path, opening: &OpeningArguments) -> Result<Box<dyn Instance>, Fai
         ..default
     };
     octant_fmu_host::open(fmu, &options).map_err(|error| {
-        Failure::of_kind(error.kind(), format!("failed to open {}: {error}", fmu.display()))
+        let (kind, error) = (error.kind(), error.to_string());
+        // Most errors name the file, and some its path.
+        let name = fmu.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
+        let file = match error.contains(&name) && !name.is_empty() {
+            true => "the FMU".to_owned(),
+            false => fmu.display().to_string(),
+        };
+        Failure::of_kind(kind, format!("failed to open {file}: {error}"))
     })
 }
 
@@ -234,7 +242,12 @@ fn span(
         interface.fixed_internal_step_s.filter(|_| chosen != Some(Interface::ModelExchange))
     };
     let step_s = step_s.or(default.step_s).or_else(internal).unwrap_or((stop_s - start_s) / 500.0);
-    Ok(Span { start_s, stop_s, step_s, tolerance: tolerance.or(default.tolerance) })
+    let splits = match (&description.co_simulation, chosen) {
+        (Some(interface), None | Some(Interface::CoSimulation)) => interface.variable_step,
+        // Model exchange is integrated over steps of any length.
+        _ => true,
+    };
+    Ok(Span { start_s, stop_s, step_s, tolerance: tolerance.or(default.tolerance), splits })
 }
 
 /// Prints the messages of the FMU.
@@ -277,10 +290,14 @@ fn tell(
         terminated: finished.terminated,
         interrupted: finished.cancelled,
         wall_s,
+        notes: finished.notes.clone(),
         outputs: outputs.columns.into_iter().map(|column| column.name).collect(),
         left_out: outputs.left_out,
         out: kept.out.map(Path::to_owned),
     };
+    for text in &summary.notes {
+        note!("octant: {}: warning: {text}", kept.fmu.display());
+    }
     if kept.json {
         return print_json(&summary);
     }

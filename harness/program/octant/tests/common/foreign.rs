@@ -6,10 +6,10 @@ mod sound;
 use octant_fmu_host::description::Standard;
 use octant_fmu_host::library::platforms;
 use octant_test_processes::command;
-pub(crate) use sound::{fmu, sources, unpacked, without_clocks};
+pub(crate) use sound::{copy, fmu, pack, sources, unpacked, without_clocks};
 use std::path::Path;
 
-/// Names of these FMUs, without `scheduled_fmi3`: it has only the functions that its own tests call.
+/// Names of these FMUs, without `scheduled_fmi3` and `timed_fmi3`: they have only the functions that their own tests call.
 pub const NAMES: [&str; 13] = [
     "gain_fmi2",
     "trouble_fmi2",

@@ -45,6 +45,8 @@ pub(super) const ROWS: &[Row] = &[
     ("run", "--step", &[Tested("system_foreign::a_packed_system_is_run_and_what_is_none_is_refused"), Refused("run ../short.toml --step 1s", SCENARIO)]),
     ("run", "--start", &[Acts("run ../fmus/octant.ssp --stop 0.1s --in-process [--start early]", "--start: found \"early\""), Refused("run ../short.toml --start 1s", SCENARIO)]),
     ("run", "--stop", &[Tested("system_foreign::a_packed_system_is_run_and_what_is_none_is_refused"), Refused("run ../short.toml --stop 1s", SCENARIO)]),
+    ("run", "--time-limit", &[Refused("run ../fmus/octant.ssp --stop 0.1s --time-limit 0", "--time-limit: found \"0\""), Refused("run ../short.toml --time-limit 2", SCENARIO)]),
+    ("run", "--nan-limit", &[Tested("system_exact::an_output_that_is_no_number_is_said_once_with_its_first_time_and_a_limit_ends_the_run"), Refused("run ../short.toml --nan-limit 2", SCENARIO)]),
     ("run", "--every", &[Acts("run ../fmus/octant.ssp --stop 0.1s --in-process --json [--every 5]", "\"recorded_every\": 5"), Refused("run ../short.toml --every 2", SCENARIO)]),
     ("run", "--csv", &[Tested("system_foreign::a_signal_dictionary_carries_what_a_connection_carries"), Refused("run ../short.toml --csv", SCENARIO)]),
     ("run", "--in-process", &[Tested("system_foreign::model_exchange_and_co_simulation_run_together"), Refused("run ../short.toml --in-process", SCENARIO)]),

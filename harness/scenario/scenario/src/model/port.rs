@@ -74,6 +74,8 @@ pub struct Setting {
 pub enum Set {
     /// A number in the variable's own unit.
     Number(f64),
+    /// A whole number beyond 2⁵³, which f64 may not have.
+    Whole(i128),
     /// True or false.
     Flag(bool),
     /// A text, the name of an enumeration's item, or a quantity.

@@ -22,6 +22,8 @@ pub struct SteppingSettings {
     pub loops: IterationLimits,
     /// Maximum number of times that a step is halved.
     pub halvings: u32,
+    /// Maximum number of values that are no numbers (NaN) from outputs into inputs; `None`: any.
+    pub no_numbers_max: Option<u64>,
 }
 
 /// Abilities of an FMU.

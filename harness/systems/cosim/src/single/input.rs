@@ -10,7 +10,7 @@ use octant_fmu_host::description::units::{UnitConversion, known};
 use octant_fmu_host::description::{
     Causality, Description, IntervalVariability, Variability, Variable, VariableType,
 };
-use octant_fmu_host::instance::{AccessPlan, InstanceError, VariableGroup};
+use octant_fmu_host::instance::{AccessPlan, InstanceError, VariableGroup, whole};
 use std::path::Path;
 
 /// Reasons why inputs can't be read.
@@ -57,6 +57,11 @@ pub struct Inputs {
     reached: usize,
     /// Number of rows whose ticks were asked for.
     ticked: usize,
+    /// Times of rows at which an input doesn't go on as before, s: a held value changes, two rows of one
+    /// time are a step, or a clock ticks.
+    jumps_s: Vec<f64>,
+    /// Difference within which a row's time is a requested time, s.
+    close_s: f64,
 }
 
 /// Column of a triggered clock.
@@ -87,6 +92,19 @@ impl<'a> Header<'a> {
     fn clock(&self) -> Option<&'a Variable> {
         let (variable, _) = self.elements.first()?;
         (variable.kind == VariableType::Clock).then_some(*variable)
+    }
+
+    /// Reads a value as it is exchanged: whole numbers of 64 bits as their bits.
+    fn value(&self, text: &str, kind: VariableType) -> Result<f64, String> {
+        if !whole::is_wide(kind) {
+            return Ok(self.units.apply(number(text, kind)?));
+        }
+        let found = match self.units.is_identity() {
+            true => whole::parse(text),
+            false => text.parse().ok().and_then(|number| whole::of(self.units.apply(number))),
+        };
+        let bits = found.and_then(|found| whole::to_bits(kind, found));
+        bits.ok_or_else(|| format!("found {text:?}, expected a whole number of {}", kind.name()))
     }
 }
 
@@ -171,10 +189,10 @@ impl Inputs {
                 variables.push(variable);
             }
         }
-        let plan = AccessPlan::new(description, &variables)?;
+        let plan = AccessPlan::exactly(description, &variables)?;
         let mut numbers = vec![0.0; plan.elements];
         for (variable, place) in variables.iter().zip(&plan.places) {
-            octant_fmu_bind::bind::start(variable, &mut numbers[place.clone()]);
+            octant_fmu_bind::bind::start_exactly(variable, &mut numbers[place.clone()]);
         }
         let column = |(variable, element): &(&Variable, usize)| {
             let known = variables.iter().position(|known| std::ptr::eq(*known, *variable));
@@ -227,15 +245,45 @@ impl Inputs {
                 let mut rest = field.split_ascii_whitespace();
                 for ((variable, _), column) in header.elements.iter().zip(&mut columns) {
                     let text = if expected > 1 { rest.next().unwrap_or_default() } else { field };
-                    let value = number(text, variable.kind).map_err(wrong)?;
-                    column.values.push(header.units.apply(value));
+                    let value = header.value(text, variable.kind).map_err(wrong)?;
+                    column.values.push(value);
                 }
             }
         }
         if time_s.is_empty() {
             return Err(content(line + 1, 1, "the file ends, expected a row of numbers".into()));
         }
-        Ok(Self { plan, numbers, time_s, columns, clocks, row: 0, reached: 0, ticked: 0 })
+        let jumps_s = jumps_s(&time_s, &columns, &clocks);
+        Ok(Self {
+            plan,
+            numbers,
+            time_s,
+            columns,
+            clocks,
+            row: 0,
+            reached: 0,
+            ticked: 0,
+            jumps_s,
+            close_s: 0.0,
+        })
+    }
+
+    /// Takes the times of rows for requested times where they differ by so little, s.
+    pub fn take_as_close(&mut self, close_s: f64) {
+        self.close_s = close_s;
+    }
+
+    /// Lists the times between two times at which an input doesn't go on as before, s.
+    pub fn jumps_between(&self, after_s: f64, before_s: f64) -> impl Iterator<Item = f64> + '_ {
+        let first =
+            self.jumps_s.partition_point(|time_s| *time_s <= after_s + self.close_to(after_s));
+        let before_s = before_s - self.close_to(before_s);
+        self.jumps_s[first..].iter().copied().take_while(move |time_s| *time_s < before_s)
+    }
+
+    /// A communication point is a product, and may differ in the last digits from a row's decimal time.
+    fn close_to(&self, time_s: f64) -> f64 {
+        self.close_s.max(1e-12 * time_s.abs())
     }
 
     /// Returns first and last time of the table, s.
@@ -246,9 +294,7 @@ impl Inputs {
 
     /// Writes the inputs at a time into the numbers. Times must come in order.
     pub fn at(&mut self, time_s: f64) {
-        // A communication point is a product, and may differ in the last digits from a row's
-        // decimal time.
-        let reached = time_s + 1e-12 * time_s.abs();
+        let reached = time_s + self.close_to(time_s);
         if self.time_s[self.row] > reached {
             self.row = 0;
         }
@@ -298,6 +344,23 @@ impl Inputs {
         }
         Some(group)
     }
+}
+
+/// Lists the times of rows at which an input doesn't go on as before.
+fn jumps_s(time_s: &[f64], columns: &[Column], clocks: &[ClockColumn]) -> Vec<f64> {
+    let jumps = |row: &usize| {
+        let row = *row;
+        let ticks = clocks.iter().any(|clock| clock.ticks.get(row) == Some(&true));
+        let changes = |column: &Column| {
+            row > 0
+                && column.values[row].to_bits() != column.values[row - 1].to_bits()
+                && (!column.continuous || time_s[row] == time_s[row - 1])
+        };
+        ticks || columns.iter().any(changes)
+    };
+    let mut times_s: Vec<f64> = (0..time_s.len()).filter(jumps).map(|row| time_s[row]).collect();
+    times_s.dedup();
+    times_s
 }
 
 /// Returns the SI value of a time column's unit; `None` if the column isn't time.

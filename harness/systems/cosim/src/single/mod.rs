@@ -11,7 +11,7 @@ use input::Inputs;
 use octant_base::control::Control;
 use octant_base::failing::{Failing, FailureKind};
 use octant_fmu_bind::settings::Starts;
-use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome};
+use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome, Stepped};
 use output::{Outputs, Sink};
 
 /// Duration and step of a run.
@@ -25,6 +25,8 @@ pub struct Span {
     pub step_s: f64,
     /// Relative tolerance.
     pub tolerance: Option<f64>,
+    /// True if the FMU makes steps of any length.
+    pub splits: bool,
 }
 
 /// Maximum number of steps in a run: with more, the step is surely too short.
@@ -85,7 +87,7 @@ impl Span {
 }
 
 /// Results of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
     /// Steps done.
     pub steps: u64,
@@ -95,6 +97,14 @@ pub struct Finished {
     pub terminated: bool,
     /// True if the run was interrupted on request.
     pub cancelled: bool,
+    /// Differences between the times that were asked for and those of the run, in words.
+    pub notes: Vec<String>,
+}
+
+impl Finished {
+    fn at(time_s: f64) -> Self {
+        Self { steps: 0, time_s, terminated: false, cancelled: false, notes: Vec::new() }
+    }
 }
 
 /// Reasons why a run was aborted.
@@ -175,6 +185,9 @@ pub fn simulate(
         }
     }
     instance.exit_initialization()?;
+    if let Some(inputs) = &mut inputs {
+        inputs.take_as_close(1e-9 * span.step_s);
+    }
     let (mut numbers, mut texts) = (vec![0.0; outputs.plan.elements], Vec::new());
     let mut rest = numbers.as_mut_slice();
     for group in &outputs.plan.groups {
@@ -185,8 +198,8 @@ pub fn simulate(
     outputs.read_texts(instance, &mut texts)?;
     sink.row(span.start_s, outputs, &numbers, &texts)?;
     let steps = span.steps().unwrap_or(0);
-    let mut finished =
-        Finished { steps: 0, time_s: span.start_s, terminated: false, cancelled: false };
+    let mut finished = Finished::at(span.start_s);
+    let mut late = LateRows::default();
     // A product doesn't accumulate errors.
     let time = |step: u64| (span.start_s + step as f64 * span.step_s).min(span.stop_s);
     for step in 0..steps {
@@ -196,20 +209,65 @@ pub fn simulate(
         }
         let (now_s, end_s) =
             (time(step), if step + 1 == steps { span.stop_s } else { time(step + 1) });
+        let whole = (end_s - now_s - span.step_s).abs() <= 1e-9 * span.step_s;
+        if !whole && !span.splits {
+            finished.notes.push(format!(
+                "the last step, from {now_s} s to {end_s} s, wasn't made: {CAN_NOT_SPLIT}, and makes steps of {} s",
+                span.step_s
+            ));
+            break;
+        }
+        let ended =
+            part(instance, inputs.as_deref_mut(), outputs, span, (now_s, end_s), &mut numbers)?;
+        if let Some(inputs) = inputs.as_deref().filter(|_| !span.splits) {
+            late.look(inputs, now_s, end_s);
+        }
+        finished.steps += 1;
+        finished.time_s = ended.time_s;
+        outputs.read_texts(instance, &mut texts)?;
+        sink.row(finished.time_s, outputs, &numbers, &texts)?;
+        if ended.terminate {
+            finished.terminated = true;
+            break;
+        }
+    }
+    finished.notes.extend(late.told());
+    instance.terminate()?;
+    Ok(finished)
+}
+
+/// Reason why a step isn't split.
+const CAN_NOT_SPLIT: &str = "the FMU can't vary its step (canHandleVariableCommunicationStepSize)";
+
+/// Steps from one communication point to the next: in parts, where inputs jump between them and the
+/// FMU makes steps of any length.
+fn part(
+    instance: &mut dyn Instance,
+    mut inputs: Option<&mut Inputs>,
+    outputs: &Outputs,
+    span: &Span,
+    (start_s, end_s): (f64, f64),
+    numbers: &mut [f64],
+) -> Result<Stepped, SimulateError> {
+    let mut now_s = start_s;
+    loop {
+        let mut until_s = end_s;
         let (set, given): (&[_], &[f64]) = match &mut inputs {
             Some(inputs) => {
                 inputs.at(now_s);
                 if let Some(clocks) = inputs.ticks() {
                     instance.set(&clocks, &vec![1.0; clocks.elements])?;
                 }
+                let jump_s = inputs.jumps_between(now_s, end_s).next();
+                until_s = jump_s.filter(|_| span.splits).unwrap_or(end_s);
                 (&inputs.plan.groups, &inputs.numbers)
             }
             None => (&[], &[]),
         };
-        let whole = (end_s - now_s - span.step_s).abs() <= 1e-9 * span.step_s;
-        let step_s = if whole { span.step_s } else { end_s - now_s };
-        let stepped =
-            instance.exchange(set, given, now_s, step_s, &outputs.plan.groups, &mut numbers)?;
+        let whole = (until_s - now_s - span.step_s).abs() <= 1e-9 * span.step_s;
+        let step_s = if whole { span.step_s } else { until_s - now_s };
+        let mut stepped =
+            instance.exchange(set, given, now_s, step_s, &outputs.plan.groups, numbers)?;
         if stepped.outcome == StepOutcome::Discarded && !stepped.terminate {
             return Err(SimulateError::Refused {
                 fmu: instance.name().to_owned(),
@@ -218,15 +276,53 @@ pub fn simulate(
                 said: octant_fmu_host::instance::said(instance),
             });
         }
-        finished.steps += 1;
-        finished.time_s = if stepped.outcome == StepOutcome::Done { end_s } else { stepped.time_s };
-        outputs.read_texts(instance, &mut texts)?;
-        sink.row(finished.time_s, outputs, &numbers, &texts)?;
-        if stepped.terminate {
-            finished.terminated = true;
-            break;
+        if stepped.outcome == StepOutcome::Done {
+            stepped.time_s = until_s;
         }
+        if stepped.terminate || until_s == end_s {
+            return Ok(stepped);
+        }
+        now_s = until_s;
     }
-    instance.terminate()?;
-    Ok(finished)
+}
+
+/// Rows of inputs that an FMU gets after their time.
+#[derive(Debug, Default)]
+struct LateRows {
+    rows: u64,
+    /// Rows that another one follows before the next communication point.
+    lost: u64,
+    /// Time of the first one, and the point at which it arrives, s.
+    first_s: Option<(f64, f64)>,
+    largest_shift_s: f64,
+}
+
+impl LateRows {
+    /// Looks for rows between two communication points.
+    fn look(&mut self, inputs: &Inputs, now_s: f64, end_s: f64) {
+        let mut rows = 0;
+        for time_s in inputs.jumps_between(now_s, end_s) {
+            rows += 1;
+            self.first_s.get_or_insert((time_s, end_s));
+            self.largest_shift_s = self.largest_shift_s.max(end_s - time_s);
+        }
+        self.rows += rows;
+        self.lost += rows.saturating_sub(1);
+    }
+
+    fn told(&self) -> Option<String> {
+        let (row_s, point_s) = self.first_s?;
+        let lost = match self.lost {
+            0 => String::new(),
+            lost => {
+                format!("; {lost} of them never, because a later one follows before that point")
+            }
+        };
+        Some(format!(
+            "{} of inputs between communication points reached the FMU at the next one, the first of {row_s} s at \
+             {point_s} s, the largest shift {:.6} s: {CAN_NOT_SPLIT}{lost}",
+            octant_base::number::counted(self.rows, "row", "rows"),
+            self.largest_shift_s
+        ))
+    }
 }

@@ -2,7 +2,7 @@
 
 use octant_fmu_bind::find::{UnknownVariable, count, find, unknown};
 use octant_fmu_host::description::{Causality, Description, Variable, VariableType};
-use octant_fmu_host::instance::{AccessPlan, Instance, InstanceError, VariableGroup};
+use octant_fmu_host::instance::{AccessPlan, Instance, InstanceError, VariableGroup, whole};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -144,7 +144,7 @@ impl Outputs {
         }
         let (texts, numbers): (Vec<&Variable>, Vec<&Variable>) =
             variables.into_iter().partition(|variable| is_text(variable));
-        let plan = AccessPlan::new(description, &numbers)?;
+        let plan = AccessPlan::exactly(description, &numbers)?;
         let groups = texts.iter().map(|variable| VariableGroup::of(description, variable));
         let groups: Vec<VariableGroup> = groups.collect::<Result<_, _>>()?;
         let place_of = |variable: &Variable| {
@@ -175,15 +175,22 @@ impl Outputs {
         texts: &mut Vec<String>,
     ) -> Result<(), InstanceError> {
         texts.clear();
-        for group in &self.texts {
-            if group.kind == VariableType::String {
-                texts.extend(instance.get_strings(group)?);
-            } else {
-                texts.extend(instance.get_binaries(group)?.iter().map(|bytes| hexadecimal(bytes)));
-            }
-        }
-        Ok(())
+        self.texts.iter().try_for_each(|group| read_texts(instance, group, texts))
     }
+}
+
+/// Appends the texts of a group, and bytes as hexadecimal digits.
+pub(crate) fn read_texts(
+    instance: &mut dyn Instance,
+    group: &VariableGroup,
+    texts: &mut Vec<String>,
+) -> Result<(), InstanceError> {
+    if group.kind == VariableType::String {
+        texts.extend(instance.get_strings(group)?);
+    } else {
+        texts.extend(instance.get_binaries(group)?.iter().map(|bytes| hexadecimal(bytes)));
+    }
+    Ok(())
 }
 
 /// Returns all elements of an array that is exactly this many scalars in the file.
@@ -227,10 +234,11 @@ fn write_quoted(out: &mut (impl Write + ?Sized), text: &str) -> io::Result<()> {
     write!(out, "\"{}\"", text.replace('"', "\"\""))
 }
 
-/// Writes a value in the form of its type: whole numbers without a point, all others so that they
-/// read back to the same bits.
+/// Writes a value in the form of its type: whole numbers without a point, those of 64 bits from their
+/// bits, all others so that they read back to the same bits.
 fn write_value(out: &mut impl Write, kind: VariableType, value: f64) -> io::Result<()> {
     match kind {
+        _ if whole::is_wide(kind) => write!(out, "{}", whole::from_bits(kind, value)),
         VariableType::Float64 => write!(out, "{value:?}"),
         VariableType::Float32 => write!(out, "{:?}", value as f32),
         _ if value.fract() == 0.0 && value.abs() < 1e18 => write!(out, "{}", value as i64),
@@ -417,7 +425,9 @@ impl Mcap {
             match column.kind {
                 VariableType::Boolean => write!(text, "{}", value != 0.0)?,
                 // JSON can't express infinities and NaN.
-                _ if !value.is_finite() => text.extend_from_slice(b"null"),
+                kind if !whole::is_wide(kind) && !value.is_finite() => {
+                    text.extend_from_slice(b"null")
+                }
                 kind => write_value(text, kind, value)?,
             }
         }

@@ -94,8 +94,7 @@ pub fn simulate_scheduled(
     for partition in &mut partitions {
         partition.start(instance, span.start_s)?;
     }
-    let mut finished =
-        Finished { steps: 0, time_s: span.start_s, terminated: false, cancelled: false };
+    let mut finished = Finished::at(span.start_s);
     let mut now_s = span.start_s;
     loop {
         if control.look(finished.steps) {
@@ -173,7 +172,7 @@ fn variables(
         for reference in &group.references {
             let of = |variable: &&Variable| variable.reference == *reference;
             let Some(variable) = description.variables.iter().find(of) else { continue };
-            let one = VariableGroup::of(description, variable)?;
+            let one = VariableGroup::of(description, variable)?.exactly();
             let place = first..first + one.elements;
             first = place.end;
             all.push(ClockedVariable { group: one, place, clocks: variable.clocks.clone() });

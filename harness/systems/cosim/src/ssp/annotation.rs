@@ -107,6 +107,35 @@ pub(super) fn osp_step_s(experiment: &Element<'_>) -> Result<Option<f64>, SspErr
     Ok(None)
 }
 
+/// Returns the step, s, in OMSimulator's annotation of a system: that of its master, or the longest one of
+/// its solver, with a warning.
+pub(super) fn oms_step_s(system: &Element<'_>) -> Result<Option<f64>, SspError> {
+    const TYPE: &str = "org.openmodelica";
+    let lists = system.children().filter(|child| child.is(SSD, "Annotations"));
+    let theirs = |annotation: &Element<'_>| annotation.optional("type") == Some(TYPE);
+    for annotation in lists.flat_map(|list| list.children()).filter(theirs) {
+        // Versions of OMSimulator differ in namespaces, and in an element around it.
+        let inside = annotation.node.descendants().filter(roxmltree::Node::is_element);
+        for node in inside {
+            let element = Element { node, ..annotation };
+            match element.name() {
+                "FixedStepMaster" => return element.finite("stepSize"),
+                "VariableStepSolver" | "VariableStepMaster" => {
+                    let step_s = element.finite("maximumStepSize")?;
+                    if let Some(step_s) = step_s {
+                        element.warn(format!(
+                            "OMSimulator varies its step up to {step_s} s: that is taken as the communication step"
+                        ));
+                    }
+                    return Ok(step_s);
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(None)
+}
+
 /// Parses a communication step as the user writes it, s.
 pub(crate) fn step(text: &str) -> Result<f64, String> {
     let expected = "expected a time above 0 such as \"5 ms\"";

@@ -3,6 +3,7 @@
 use super::SspError;
 use super::xml::SspWarnings;
 use octant_fmu_host::archive::{Archive, Unpacked};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 /// File name of the structure in a package.
@@ -65,6 +66,10 @@ pub struct Package {
     structure: PathBuf,
     /// Warnings about its files.
     pub(super) warnings: SspWarnings,
+    /// True if the structure is a file that the user named, whose sources are files on disk.
+    is_loose: bool,
+    /// Packages within it that were unpacked.
+    nested: RefCell<Vec<Self>>,
     /// Temporary folder, removed with the package.
     _unpacked: Option<Unpacked>,
 }
@@ -85,6 +90,7 @@ impl Package {
     pub fn open(path: &Path) -> Result<Self, SspError> {
         let name = path.display().to_string();
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        let is_loose = !path.is_dir();
         let (folder, structure) = if path.is_dir() {
             (path.to_owned(), path.join(STRUCTURE))
         } else if extension.as_deref() == Some("ssd") {
@@ -97,7 +103,15 @@ impl Package {
             let message = format!("failed to find {STRUCTURE} in it");
             return Err(SspError::of_file(&name, message));
         }
-        Ok(Self { name, folder, structure, warnings: SspWarnings::default(), _unpacked: None })
+        Ok(Self {
+            name,
+            folder,
+            structure,
+            warnings: SspWarnings::default(),
+            is_loose,
+            nested: RefCell::default(),
+            _unpacked: None,
+        })
     }
 
     fn unpack(path: &Path, name: String) -> Result<Self, SspError> {
@@ -120,6 +134,8 @@ impl Package {
             folder,
             structure,
             warnings: SspWarnings::default(),
+            is_loose: false,
+            nested: RefCell::default(),
             _unpacked: Some(unpacked),
         })
     }
@@ -136,6 +152,8 @@ impl Package {
         match file.strip_prefix(&self.folder) {
             // The user named this very file.
             Ok(_) if self.structure == file && self.name.ends_with(".ssd") => self.name.clone(),
+            // Beside a structure that is a file there are files, and no folder of its name.
+            Ok(_) if self.is_loose => file.display().to_string(),
             Ok(inner) => format!("{}/{}", self.name, inner.display()),
             Err(_) => file.display().to_string(),
         }
@@ -161,6 +179,32 @@ impl Package {
         Ok(text)
     }
 
+    /// Opens a part of this package that is a system of its own: an `.ssd`, or another package.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub(super) fn open_part(&self, path: &Path, is_package: bool) -> Result<Self, SspError> {
+        let name = self.name_of(path);
+        if is_package {
+            return Self::unpack(path, name);
+        }
+        let folder = path.parent().unwrap_or(&self.folder).to_owned();
+        Ok(Self {
+            name,
+            folder,
+            structure: path.to_owned(),
+            warnings: SspWarnings::default(),
+            is_loose: self.is_loose,
+            nested: RefCell::default(),
+            _unpacked: None,
+        })
+    }
+
+    /// Keeps a part for as long as this package.
+    pub(super) fn keep(&self, part: Self) {
+        self.nested.borrow_mut().push(part);
+    }
+
     /// Finds the file to which a source of the structure refers.
     ///
     /// # Errors
@@ -180,7 +224,12 @@ impl Package {
         // `./resources/x.fmu` and `resources//x.fmu` are the same file.
         for part in decoded.split('/').filter(|part| !part.is_empty() && *part != ".") {
             if part == ".." {
-                return Err(PackageSourceError::Outside { found: found() });
+                // A file beside a structure that is a file is the user's own; an archive has no other.
+                if !self.is_loose {
+                    return Err(PackageSourceError::Outside { found: found() });
+                }
+                path.push(part);
+                continue;
             }
             path.push(part);
         }

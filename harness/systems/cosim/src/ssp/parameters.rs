@@ -1,9 +1,11 @@
 //! Reads the parts that the SSP formats share: parameter sets, parameter mappings, transformations,
 //! units and enumerations.
 
+use super::super::values::has;
 use super::SspError;
 use super::xml::{self, Element, SSC, SSM, SSV};
 use octant_fmu_host::description::{BaseUnit, VariableType};
+use octant_fmu_host::instance::whole;
 
 /// Parameter set: an `.ssv` file, or inline content.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,7 +32,7 @@ pub struct SystemParameter {
 pub struct Literal {
     /// Type in the file.
     pub kind: VariableType,
-    /// Numbers, Booleans as 0 and 1; empty for texts, enumerations and bytes.
+    /// Numbers, Booleans as 0 and 1, whole numbers of 64 bits as their bits; empty for texts, enumerations and bytes.
     pub numbers: Vec<f64>,
     /// Text, name of an item, or bytes in hexadecimal digits; empty for numbers.
     pub text: String,
@@ -155,15 +157,20 @@ pub(super) const TOP: [&str; 8] = [
     "generationDateAndTime",
 ];
 
-/// Reads a `ParameterSet`.
-pub(super) fn parameter_set(root: &Element<'_>) -> Result<ParameterSet, SspError> {
+/// Reads a `ParameterSet`; `outer` are units of the structure in which it stands.
+pub(super) fn parameter_set(
+    root: &Element<'_>,
+    outer: &[(String, BaseUnit)],
+) -> Result<ParameterSet, SspError> {
     root.expect(SSV, "ParameterSet")?;
     version(root)?;
     root.only(&TOP, &[(SSV, "Parameters"), (SSV, "Enumerations"), (SSV, "Units")])?;
-    let units = match root.child(SSV, "Units")? {
+    let mut units = match root.child(SSV, "Units")? {
         Some(units) => self::units(&units)?,
         None => Vec::new(),
     };
+    // Units of its own come first.
+    units.extend_from_slice(outer);
     let mut set = ParameterSet { file: root.file.to_owned(), parameters: Vec::new() };
     let Some(parameters) = root.child(SSV, "Parameters")? else {
         return Err(root.error("the element <Parameters> is missing"));
@@ -233,16 +240,17 @@ fn literal(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Litera
     Ok(literal)
 }
 
-/// Parses a number of a type.
+/// Parses a number of a type, a whole number of 64 bits as its bits.
 pub(crate) fn number(text: &str, kind: VariableType) -> Option<f64> {
     match kind {
         VariableType::Float64 | VariableType::Float32 => xml::double(text),
         VariableType::Boolean => xml::boolean(text).map(|value| f64::from(u8::from(value))),
         _ => {
             let value: i128 = text.trim().parse().ok()?;
-            // Whole numbers are passed as f64.
-            let exact = value as f64;
-            (exact as i128 == value && super::super::values::fits(exact, kind)).then_some(exact)
+            if whole::is_wide(kind) {
+                return whole::to_bits(kind, value);
+            }
+            has(kind, value).then_some(value as f64)
         }
     }
 }

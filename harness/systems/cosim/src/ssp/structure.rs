@@ -6,6 +6,8 @@ pub use super::parts::{
     SystemElement,
 };
 
+mod nested;
+
 use super::SspError;
 use super::annotation::{self, CoSimulation};
 use super::connectors::connectors;
@@ -14,6 +16,7 @@ use super::package::Package;
 use super::parameters::{self, SystemEnumeration, TRANSFORMATIONS};
 use super::xml::{self, Element, SSB, SSD};
 use octant_fmu_host::description::BaseUnit;
+use std::cell::RefCell;
 
 /// Maximum nesting depth of systems: far more than any design has.
 const DEPTH_MAX: usize = 64;
@@ -37,8 +40,8 @@ pub struct SystemStructure {
     pub stop_s: Option<f64>,
     /// Settings for this program alone.
     pub co_simulation: CoSimulation,
-    /// Step for programs of the Open Simulation Platform, s.
-    pub osp_step_s: Option<f64>,
+    /// Step in the annotations of the Open Simulation Platform, or of OMSimulator, s.
+    pub others_step_s: Option<f64>,
     /// Deviations from the standard that were read all the same.
     pub warnings: Vec<String>,
 }
@@ -49,8 +52,14 @@ impl SystemStructure {
     /// # Errors
     /// If a file can't be read, or asks for something that this program can't do.
     pub fn read(package: &Package) -> Result<Self, SspError> {
+        Self::read_at(package, 0)
+    }
+
+    /// Reads a structure at a depth within others.
+    fn read_at(package: &Package, depth: usize) -> Result<Self, SspError> {
         let text = package.text_of(package.structure())?;
         let file = package.name_of(package.structure());
+        let text = xml::declared(&text, &file, &package.warnings);
         let document = xml::parse(&text, &file)?;
         let top = (SSD, "SystemStructureDescription");
         let root = Element::root(&document, &file, &package.warnings, top)?;
@@ -71,11 +80,11 @@ impl SystemStructure {
         let Some(system) = root.child(SSD, "System")? else {
             return Err(root.error("the element <System> is missing"));
         };
-        let units = match root.child(SSD, "Units")? {
+        let mut units = match root.child(SSD, "Units")? {
             Some(units) => parameters::units(&units)?,
             None => Vec::new(),
         };
-        let enumerations = match root.child(SSD, "Enumerations")? {
+        let mut enumerations = match root.child(SSD, "Enumerations")? {
             Some(enumerations) => parameters::enumerations(&enumerations)?,
             None => Vec::new(),
         };
@@ -86,8 +95,15 @@ impl SystemStructure {
             stop_s = experiment.finite("stopTime")?;
             osp_step_s = annotation::osp_step_s(&experiment)?;
         }
-        let reader = Reader { package, units: &units };
-        let system = reader.system(&system, 0)?;
+        let others_step_s = match osp_step_s {
+            Some(step_s) => Some(step_s),
+            None => annotation::oms_step_s(&system)?,
+        };
+        let reader = Reader { package, units: &units, parts: RefCell::default() };
+        let system = reader.system(&system, depth)?;
+        let parts = reader.parts.take();
+        units.extend(parts.units);
+        enumerations.extend(parts.enumerations);
         Ok(Self {
             name: root.optional("name").unwrap_or_default().to_owned(),
             system,
@@ -96,7 +112,7 @@ impl SystemStructure {
             start_s,
             stop_s,
             co_simulation: annotation::of(&root, package)?,
-            osp_step_s,
+            others_step_s,
             warnings: package.warnings.take(),
             file: file.clone(),
         })
@@ -107,6 +123,7 @@ struct Reader<'p> {
     package: &'p Package,
     /// Units of the structure's file.
     units: &'p [(String, BaseUnit)],
+    parts: RefCell<nested::Definitions>,
 }
 
 /// Children that every element of a system may have.
@@ -136,7 +153,12 @@ impl Reader<'_> {
             )?;
             for part in parts.children() {
                 let part_read = match part.name() {
-                    "Component" => SystemElement::Component(self.component(&part)?),
+                    "Component" => match nested::kind(&part) {
+                        Some(is_package) => {
+                            SystemElement::System(self.nested(&part, is_package, depth + 1)?)
+                        }
+                        None => SystemElement::Component(self.component(&part)?),
+                    },
                     "System" => {
                         part.required("name")?;
                         SystemElement::System(self.system(&part, depth + 1)?)
@@ -205,16 +227,11 @@ impl Reader<'_> {
         element.only(&["name", "type", "source", "implementation"], &ELEMENT)?;
         match element.optional("type").unwrap_or("application/x-fmu-sharedlibrary") {
             "application/x-fmu-sharedlibrary" => {}
-            other @ ("application/x-ssp-definition" | "application/x-ssp-package") => {
-                return Err(element.error(format!(
-                    "components of type {other} are not part of this version: put the system into \
-                     this file as an element <System>"
-                )));
-            }
             other => {
                 return Err(element.error(format!(
-                    "the type {other:?} was found, expected application/x-fmu-sharedlibrary: only \
-                     FMUs can be run"
+                    "the type {other:?} was found, expected application/x-fmu-sharedlibrary, \
+                     application/x-ssp-definition or application/x-ssp-package: FMUs and systems of \
+                     them can be run"
                 )));
             }
         }
@@ -267,7 +284,11 @@ impl Reader<'_> {
                 binding.child(SSD, "ParameterValues")?,
                 ("ParameterValues", "application/x-ssp-parameter-set"),
                 component,
-                parameters::parameter_set,
+                |root| {
+                    // The units of the structure are those of its own file alone.
+                    let is_inline = root.file == binding.file;
+                    parameters::parameter_set(root, if is_inline { self.units } else { &[] })
+                },
             )?;
             let mapping = match binding.child(SSD, "ParameterMapping")? {
                 Some(mapping) => {
@@ -335,6 +356,7 @@ impl Reader<'_> {
             self.package.resolve(source).map_err(|error| element.error(error.to_string()))?;
         let text = self.package.text_of(&path)?;
         let file = self.package.name_of(&path);
+        let text = xml::declared(&text, &file, &self.package.warnings);
         let document = xml::parse(&text, &file)?;
         let warnings = &self.package.warnings;
         read(&Element { node: document.root_element(), file: &file, warnings })

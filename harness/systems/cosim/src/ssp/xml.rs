@@ -4,6 +4,7 @@ use super::SspError;
 use octant_base::names::suggestion;
 use octant_fmu_host::description::{BaseUnit, units};
 use roxmltree::{Document, Node, ParsingOptions};
+use std::borrow::Cow;
 use std::cell::RefCell;
 
 /// Namespaces of the standard, the same for 1.0 and 2.0.
@@ -16,6 +17,38 @@ pub(super) const SSB: &str = "http://ssp-standard.org/SSP1/SystemStructureSignal
 
 /// Maximum number of elements in a file.
 const NODES_MAX: u32 = 4_000_000;
+
+/// Declares the usual prefixes of the standard that a file uses and doesn't declare, with a warning each.
+/// Lines stay.
+pub(super) fn declared<'a>(text: &'a str, file: &str, warnings: &SspWarnings) -> Cow<'a, str> {
+    let mut text = Cow::Borrowed(text);
+    for (prefix, namespace) in
+        [("ssd", SSD), ("ssc", SSC), ("ssv", SSV), ("ssm", SSM), ("ssb", SSB)]
+    {
+        let is_used = ["<", "</"].iter().any(|open| text.contains(&format!("{open}{prefix}:")));
+        if !is_used || text.contains(&format!("xmlns:{prefix}")) {
+            continue;
+        }
+        // The root element: not the declaration, a comment or a document type.
+        let root = text.match_indices('<').find(|(at, _)| {
+            text[at + 1..].starts_with(|letter: char| letter.is_alphabetic() || letter == '_')
+        });
+        let Some((root, _)) = root else { continue };
+        let end = text[root..].find(|letter: char| letter.is_whitespace() || "/>".contains(letter));
+        let Some(end) = end.map(|end| root + end) else { continue };
+        let (before, after) = text.split_at(end);
+        let with = format!("{before} xmlns:{prefix}=\"{namespace}\"{after}");
+        let line = 1 + before.matches('\n').count() as u32;
+        text = with.into();
+        warnings.add(&SspError {
+            file: file.to_owned(),
+            line: Some(line),
+            element: String::new(),
+            message: format!("the prefix {prefix} isn't declared: it is read as {namespace}"),
+        });
+    }
+    text
+}
 
 /// Parses a file.
 pub(super) fn parse<'a>(text: &'a str, file: &str) -> Result<Document<'a>, SspError> {
@@ -294,6 +327,11 @@ impl SspWarnings {
             self.units.borrow_mut().push(place);
             self.add(warning);
         }
+    }
+
+    /// Adds the warnings of a part.
+    pub(super) fn extend(&self, warnings: Vec<String>) {
+        self.all.borrow_mut().extend(warnings);
     }
 
     /// Takes all warnings, in their order.
