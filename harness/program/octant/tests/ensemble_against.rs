@@ -109,6 +109,8 @@ impl Bench {
             inputs: Vec::new(),
             altered_streams: None,
             heading: None,
+            false_alarms: None,
+            followed: None,
             method: "eight".to_owned(),
             calibration: Some(CalibrationScore {
                 reference: None,

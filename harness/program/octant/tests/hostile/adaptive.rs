@@ -172,10 +172,10 @@ impl Endpoint for Unit {
     }
 
     fn parameters(&self) -> ParameterEstimate {
-        let ParameterEstimate { parameters, mut sigma } = self.core.parameters();
+        let ParameterEstimate { revision, parameters, mut sigma } = self.core.parameters();
         let mut values = parameters.to_array();
         (self.adapts.parameters)(&mut values, &mut sigma);
-        ParameterEstimate { parameters: Parameters::from_array(&values), sigma }
+        ParameterEstimate { revision, parameters: Parameters::from_array(&values), sigma }
     }
 
     fn conclusion(&mut self) -> Conclusion {
