@@ -2,6 +2,7 @@
 //!
 //! - [`uri`]: names of ports: `serial:/dev/ttyUSB0?baud=921600`, `can:can0`, `udp:host:port`.
 //! - [`port`]: open ports: lines of bytes, datagrams, CAN frames.
+//! - [`capture`]: bytes of an instrument that sends on its own, kept in a file.
 //! - [`wire`]: messages across a port, and counts of losses.
 //! - [`harness`]: the harness end: sends samples and receives outputs.
 //! - [`device`]: the device end: steps a core once for each sample, never twice.
@@ -14,6 +15,7 @@
 //! over every line, however bad it is.
 
 pub mod asking;
+pub mod capture;
 pub mod clock;
 pub mod device;
 pub mod fault;

@@ -16,6 +16,7 @@ pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
 pub use live::{LiveEndpoint, configuration};
 pub use open::{check_live, open, open_with};
+pub use powered::power_record;
 pub use rest::RestUse;
 pub use served::ServedCore;
 pub use solution::SolutionEndpoint;

@@ -123,26 +123,33 @@ impl Powered {
 
     /// Makes the record of all switchings.
     pub(super) fn record(&self) -> PowerRecord {
-        let plan = self.outlet.plan();
-        let (outlet, voltage_v, current_limit_a) = match plan.outlet {
-            Outlet::Relay(relay) => (format!("relay {relay}"), None, None),
-            Outlet::Supply(supply) => {
-                let channel = supply.channel.map(|channel| format!("channel {channel}"));
-                let outlet = channel.unwrap_or_else(|| "supply".to_owned());
-                (outlet, Some(supply.voltage_v), Some(supply.current_limit_a))
-            }
-        };
-        PowerRecord {
-            current_limit_a,
-            dips: self.dips,
-            end: self.end.map(reading),
-            identity: self.outlet.identity().to_owned(),
-            outlet,
-            port: plan.port.clone(),
-            ridden_through: self.ridden_through,
-            switchings: self.outlet.switchings().iter().map(switching).collect(),
-            voltage_v,
+        let record = power_record(&self.outlet, self.end);
+        PowerRecord { dips: self.dips, ridden_through: self.ridden_through, ..record }
+    }
+}
+
+/// Makes the record of all switchings of an output, and of its state in the end.
+#[must_use]
+pub fn power_record(outlet: &PowerOutlet, end: Option<PowerReading>) -> PowerRecord {
+    let plan = outlet.plan();
+    let (name, voltage_v, current_limit_a) = match plan.outlet {
+        Outlet::Relay(relay) => (format!("relay {relay}"), None, None),
+        Outlet::Supply(supply) => {
+            let channel = supply.channel.map(|channel| format!("channel {channel}"));
+            let name = channel.unwrap_or_else(|| "supply".to_owned());
+            (name, Some(supply.voltage_v), Some(supply.current_limit_a))
         }
+    };
+    PowerRecord {
+        current_limit_a,
+        dips: 0,
+        end: end.map(reading),
+        identity: outlet.identity().to_owned(),
+        outlet: name,
+        port: plan.port.clone(),
+        ridden_through: 0,
+        switchings: outlet.switchings().iter().map(switching).collect(),
+        voltage_v,
     }
 }
 

@@ -9,6 +9,7 @@
 //!
 //! A folder uses those above it.
 
+pub mod acquired;
 pub mod bench;
 pub mod observers;
 mod results;

@@ -35,7 +35,7 @@ mod walk;
 
 pub use any::AnySource;
 pub use from_scenario::{check_live, open, open_with};
-pub use live::LiveSource;
+pub use live::{BenchTable, LiveSource};
 pub use log::LogSource;
 pub use plant::PlantSource;
 pub use replay::Replay;

@@ -26,6 +26,28 @@ const NAMES: [&str; 9] = [
     "heading_deg",
 ];
 
+/// Number of columns that exports may have.
+const EXPORTED: usize = NAMES.len();
+/// Keys of the columns behind these, which exports don't have.
+const FURTHER: [&str; 8] = [
+    "sigma_north",
+    "sigma_east",
+    "sigma_velocity_north",
+    "sigma_velocity_east",
+    "sigma_roll",
+    "sigma_pitch",
+    "sigma_heading",
+    "quality",
+];
+
+/// Reason of a row whose quality is one of those that were named.
+const LEFT_OUT_QUALITY: &str = "rows of a quality that is left out";
+
+/// Name of a column, or its key.
+fn named(index: usize) -> &'static str {
+    NAMES.iter().chain(&FURTHER).nth(index).copied().unwrap_or_default()
+}
+
 pub(crate) struct ColumnsReader {
     lines: Lines,
     time: (usize, TimeUnit),
@@ -33,6 +55,13 @@ pub(crate) struct ColumnsReader {
     height: Option<usize>,
     velocity: Option<[usize; 2]>,
     attitude: Option<[usize; 3]>,
+    /// Standard deviations: position, velocity, attitude.
+    position_sigma: Option<[usize; 2]>,
+    velocity_sigma: Option<[usize; 2]>,
+    attitude_sigma: Option<[usize; 3]>,
+    quality: Option<usize>,
+    /// Qualities whose rows are left out.
+    left_out: Vec<String>,
     angle_rad: f64,
     velocity_mps: f64,
     scale: TimeScale,
@@ -43,17 +72,25 @@ pub(crate) struct ColumnsReader {
 impl ColumnsReader {
     pub(crate) fn new(file: File, columns: &TrajectoryColumns) -> Result<Self, String> {
         let mut lines = Lines::new(file, columns);
-        let TrajectoryColumns { time, position, velocity, attitude, .. } = columns;
-        let chosen: Vec<&Option<RecordedColumn>> =
-            [&time.0].into_iter().chain(position).chain(velocity).chain(attitude).collect();
+        let TrajectoryColumns { time, position, velocity, attitude, sigma, quality, .. } = columns;
+        let chosen: Vec<&Option<RecordedColumn>> = [&time.0]
+            .into_iter()
+            .chain(position)
+            .chain(velocity)
+            .chain(attitude)
+            .chain(sigma)
+            .chain([quality])
+            .collect();
         lines.skip(columns.skip_lines)?;
         // Without a single name or default, all columns are numbers and there may be no header.
-        let named = chosen.iter().any(|column| !matches!(column, Some(RecordedColumn::Number(_))));
+        let has_names = chosen[..EXPORTED]
+            .iter()
+            .any(|column| !matches!(column, Some(RecordedColumn::Number(_))));
         let only_numbers =
             chosen.iter().all(|c| matches!(c, None | Some(RecordedColumn::Number(_))))
                 && time.0.is_some()
                 && position[0].is_some();
-        let header = if named && !only_numbers { Some(lines.header()?) } else { None };
+        let header = if has_names && !only_numbers { Some(lines.header()?) } else { None };
         let has_truth =
             header.iter().flatten().any(|name| name == format!("true_{}", NAMES[1]).as_str());
         let place = |index: usize| -> Result<Option<usize>, String> {
@@ -63,6 +100,8 @@ impl ColumnsReader {
                 }
                 Some(RecordedColumn::Number(number)) => return Ok(Some(number - 1)),
                 Some(RecordedColumn::Name(name)) => name.as_str(),
+                // The exports have none of the others.
+                None if index >= EXPORTED => return Ok(None),
                 None => NAMES[index],
             };
             let Some(header) = &header else { return Ok(None) };
@@ -109,7 +148,7 @@ impl ColumnsReader {
                 0 => Ok(None),
                 n if n == indices.len() => Ok(Some(found.into_iter().flatten().collect())),
                 _ => {
-                    let names: Vec<&str> = indices.iter().map(|index| NAMES[*index]).collect();
+                    let names: Vec<&str> = indices.iter().map(|index| named(*index)).collect();
                     Err(format!("found some of {}, expected all or none", names.join(", ")))
                 }
             }
@@ -120,6 +159,11 @@ impl ColumnsReader {
             height: place(3)?,
             velocity: all(&[4, 5])?.map(|found| [found[0], found[1]]),
             attitude: all(&[6, 7, 8])?.map(|found| [found[0], found[1], found[2]]),
+            position_sigma: all(&[9, 10])?.map(|found| [found[0], found[1]]),
+            velocity_sigma: all(&[11, 12])?.map(|found| [found[0], found[1]]),
+            attitude_sigma: all(&[13, 14, 15])?.map(|found| [found[0], found[1], found[2]]),
+            quality: place(16)?,
+            left_out: columns.left_out.clone(),
             angle_rad: columns.angle_rad,
             velocity_mps: columns.velocity_mps,
             scale: TimeScale::Own,
@@ -147,6 +191,26 @@ impl ColumnsReader {
     }
 }
 
+impl ColumnsReader {
+    /// Returns whether the row has a quality that is left out.
+    fn is_left_out(&self) -> Result<bool, String> {
+        let Some(index) = self.quality.filter(|_| !self.left_out.is_empty()) else {
+            return Ok(false);
+        };
+        let quality = self.lines.field(index)?;
+        Ok(self.left_out.iter().any(|left_out| left_out == quality))
+    }
+
+    /// Standard deviations of the row. Zeros of all axes state none.
+    fn sigma(&self) -> Result<PointSigma, String> {
+        Ok(PointSigma {
+            position_m: self.lines.sigma(self.position_sigma, 1.0)?,
+            velocity_mps: self.lines.sigma(self.velocity_sigma, self.velocity_mps)?,
+            attitude_rad: self.lines.sigma(self.attitude_sigma, self.angle_rad)?,
+        })
+    }
+}
+
 impl Points for ColumnsReader {
     fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
         loop {
@@ -158,11 +222,15 @@ impl Points for ColumnsReader {
                 let text = self.lines.fields.get(index);
                 text.is_some_and(|text| text.is_empty() || text.eq_ignore_ascii_case("nan"))
             };
-            if !self.position.into_iter().all(no_number) {
+            let reason = if self.is_left_out()? {
+                LEFT_OUT_QUALITY
+            } else if self.position.into_iter().all(no_number) {
+                "rows without a position"
+            } else {
                 break;
-            }
+            };
             let line = self.lines.line;
-            self.lines.tally.left_out(1, "rows without a position", || format!("line {line}"));
+            self.lines.tally.left_out(1, reason, || format!("line {line}"));
         }
         let time_ns = self.time_ns()?;
         let lines = &self.lines;
@@ -180,13 +248,18 @@ impl Points for ColumnsReader {
             None => None,
             Some([roll, pitch, heading]) => Some([angle(roll)?, angle(pitch)?, angle(heading)?]),
         };
+        let sigma = self.sigma()?;
         self.lines.tally.point(1);
+        if let Some(index) = self.quality {
+            let quality = self.lines.field(index)?.to_owned();
+            self.lines.tally.quality(&format!("quality {quality}"));
+        }
         Ok(Some(TrajectoryPoint {
             time_ns,
             position: Some(GeodeticPosition { latitude_rad, longitude_rad, height_m }),
             velocity_mps,
             attitude: attitude_rad.map(PointAttitude::of),
-            sigma: PointSigma::default(),
+            sigma,
             digit_rad: [0.0; 3],
             attitude_doubt_s: 0.0,
         }))
@@ -337,6 +410,25 @@ impl Lines {
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(self.error(index, &format!("found {text:?}, expected a finite number"))),
         }
+    }
+
+    /// Standard deviations of some columns, in SI.
+    fn sigma<const N: usize>(
+        &self,
+        columns: Option<[usize; N]>,
+        unit: f64,
+    ) -> Result<Option<[f64; N]>, String> {
+        let Some(columns) = columns else { return Ok(None) };
+        let mut sigma = [0.0; N];
+        for (sigma, index) in sigma.iter_mut().zip(columns) {
+            *sigma = self.number(index)? * unit;
+            if *sigma < 0.0 {
+                let found = self.field(index)?;
+                let reason = format!("found {found:?}, expected a standard deviation of 0 or more");
+                return Err(self.error(index, &reason));
+            }
+        }
+        Ok(sigma.iter().any(|sigma| *sigma > 0.0).then_some(sigma))
     }
 
     fn error(&self, index: usize, reason: &str) -> String {

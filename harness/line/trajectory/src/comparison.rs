@@ -82,6 +82,10 @@ pub struct Comparison {
     headings: Vec<ComparedHeading>,
     /// Largest change of a heading of the solution by one in its last digit, rad, and the largest doubt of its time, s.
     coarsest: [f64; 2],
+    /// Largest turn of the reference in the doubt of a heading's time, rad.
+    late_rad: f64,
+    /// Times of answers without a heading, ns of the run.
+    without_ns: Vec<u64>,
 }
 
 /// Headings of solution and reference at one time of the run.
@@ -113,6 +117,8 @@ impl Default for Comparison {
             turned: None,
             headings: Vec::new(),
             coarsest: [0.0; 2],
+            late_rad: 0.0,
+            without_ns: Vec::new(),
         }
     }
 }
@@ -134,6 +140,23 @@ impl Comparison {
     #[must_use]
     pub fn coarsest_heading(&self) -> [f64; 2] {
         self.coarsest
+    }
+
+    /// Largest turn of the reference in the doubt of a heading's time, rad.
+    #[must_use]
+    pub fn late_rad(&self) -> f64 {
+        self.late_rad
+    }
+
+    /// Times at which the instrument answered without a heading, ns of the run.
+    #[must_use]
+    pub fn without_heading_ns(&self) -> &[u64] {
+        &self.without_ns
+    }
+
+    /// Takes an answer without a heading.
+    pub(crate) fn push_without(&mut self, time_ns: u64) {
+        self.without_ns.push(time_ns);
     }
 
     /// Likeness of a quantity; without points where both don't have it.
@@ -167,6 +190,10 @@ impl Comparison {
             }
             self.likeness[Quantity::Velocity as usize].push(time_ns, here, there_mps);
         }
+        if point.attitude.is_some() {
+            self.coarsest[0] = self.coarsest[0].max(point.digit_rad[2]);
+            self.coarsest[1] = self.coarsest[1].max(point.attitude_doubt_s);
+        }
         if let (Some(here), Some(there_rad)) = (point.attitude, there.attitude_rad()) {
             let tilt = here.tilt_rad.is_some() && there.tilt;
             let here_rad = here.or_level_rad();
@@ -175,8 +202,7 @@ impl Comparison {
                 let (solution_rad, reference_rad) = (here_rad[2], there_rad[2]);
                 self.headings.push(ComparedHeading { time_ns, solution_rad, reference_rad });
             }
-            self.coarsest[0] = self.coarsest[0].max(point.digit_rad[2]);
-            self.coarsest[1] = self.coarsest[1].max(point.attitude_doubt_s);
+            self.late_rad = self.late_rad.max(rate_radps * point.attitude_doubt_s);
             for (axis, (quantity, error)) in ANGLES.into_iter().enumerate() {
                 if !(tilt || error == ErrorName::Heading) {
                     continue;

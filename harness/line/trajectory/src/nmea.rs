@@ -24,15 +24,19 @@ mod framed;
 mod heading;
 mod headings;
 mod lines;
+mod problem;
 mod sentence;
 mod velocity;
 mod words;
+
+pub use self::framed::tag_time_ns;
 
 use self::choice::chosen;
 use self::date::{DAY_NS, LINES_TO_LOOK_AT, first_day};
 use self::heading::{HeadingSaid, PsxnQuality};
 use self::headings::HeadingReader;
 use self::lines::NmeaLines;
+use self::problem::NmeaProblem;
 use self::sentence::{Said, Sentence};
 use self::velocity::velocity_leads;
 use super::point::{
@@ -90,7 +94,7 @@ const NO_POSITION: &str = "sentences of times without a position";
 ///
 /// # Errors
 /// If it has none, or nothing tells their times.
-pub(crate) fn open(file: File, choice: &NmeaChoice) -> Result<Box<dyn Points>, String> {
+pub(crate) fn open(file: File, choice: &NmeaChoice) -> Result<Box<dyn Points>, NmeaProblem> {
     let mut lines = NmeaLines::new(file);
     let points = match choice.points {
         Some(points) => points,
@@ -104,15 +108,16 @@ pub(crate) fn open(file: File, choice: &NmeaChoice) -> Result<Box<dyn Points>, S
         return Ok(Box::new(HeadingReader::new(file, choice)?));
     }
     if choice.heading_time.is_some() {
-        return Err("found positions, each with the heading behind it, and a time for headings alone, expected points = \
-                    \"headings\" or no heading_time and no heading_rate"
-            .to_owned());
+        return Err(NmeaProblem::found(
+            "positions, each with the heading behind it, and a time for headings alone",
+            "points = \"headings\" or no heading_time and no heading_rate",
+        ));
     }
     Ok(Box::new(NmeaReader::new(file, choice)?))
 }
 
 /// Sentences of a file that make a point each: positions, where it has some. `None`: it has neither positions nor headings.
-fn points(lines: &mut NmeaLines) -> Result<Option<NmeaPoints>, String> {
+fn points(lines: &mut NmeaLines) -> Result<Option<NmeaPoints>, NmeaProblem> {
     let mut found = None;
     while lines.advance()? && lines.line <= LINES_TO_LOOK_AT {
         let Ok(sentence) = Sentence::of(&lines.text) else { continue };
@@ -127,7 +132,7 @@ fn points(lines: &mut NmeaLines) -> Result<Option<NmeaPoints>, String> {
 }
 
 impl NmeaReader {
-    pub(crate) fn new(file: File, choice: &NmeaChoice) -> Result<Self, String> {
+    pub(crate) fn new(file: File, choice: &NmeaChoice) -> Result<Self, NmeaProblem> {
         let mut lines = NmeaLines::new(file);
         let first_day_ns = first_day(&mut lines)?;
         let mut lines = lines.again()?;
@@ -168,7 +173,7 @@ impl NmeaReader {
     ///
     /// # Errors
     /// If its talker contradicts another one.
-    fn take(&mut self, sentence: Sentence) -> Result<Option<TrajectoryPoint>, String> {
+    fn take(&mut self, sentence: Sentence) -> Result<Option<TrajectoryPoint>, NmeaProblem> {
         let mut sentence = chosen(sentence, &self.choice);
         if let Some(quality) = sentence.heading_quality {
             self.quality.take(quality);
@@ -260,8 +265,11 @@ impl NmeaReader {
         self.given_ns = Some(point.time_ns);
         // Where within a cycle its instrument measured isn't known.
         let is_timed = begun.heading.is_none() || begun.attitude_rad.is_some();
-        let doubt_ns = self.apart_ns.filter(|_| !is_timed).unwrap_or(0);
-        Some(TrajectoryPoint { attitude_doubt_s: doubt_ns as f64 * 1e-9, ..point })
+        let of_cycle_s = || self.apart_ns.unwrap_or(0) as f64 * 1e-9;
+        // A heading of another time than its position is off by what the ship turns until then.
+        let stated_s = self.choice.heading_delay.map(|by| by.delay_s.abs() + by.uncertainty_s);
+        let doubt_s = if is_timed { 0.0 } else { stated_s.unwrap_or_else(of_cycle_s) };
+        Some(TrajectoryPoint { attitude_doubt_s: doubt_s, ..point })
     }
 }
 
@@ -270,7 +278,7 @@ impl Begun {
     ///
     /// # Errors
     /// If another one of this time contradicts it.
-    fn take(&mut self, sentence: &Sentence) -> Result<(), String> {
+    fn take(&mut self, sentence: &Sentence) -> Result<(), NmeaProblem> {
         self.sentences += 1;
         let apart = |one: [f64; 2], other: [f64; 2]| [0, 1].map(|axis| one[axis] - other[axis]);
         Said::keep(&mut self.position, sentence.position, "positions", |one, other| {
@@ -340,7 +348,7 @@ impl Begun {
 impl Points for NmeaReader {
     fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
         loop {
-            if !self.lines.advance()? {
+            if !self.lines.advance().map_err(|problem| problem.to_string())? {
                 if self.waits.take().is_some() {
                     self.leave_out(NO_POSITION);
                 }
@@ -354,7 +362,7 @@ impl Points for NmeaReader {
             let line = self.lines.line;
             let ended = match sentence {
                 Ok(sentence) => {
-                    self.take(sentence).map_err(|reason| format!("line {line}: {reason}"))?
+                    self.take(sentence).map_err(|problem| problem.at(line).to_string())?
                 }
                 Err(_) if is_blank => None,
                 Err(reason) => {

@@ -3,10 +3,13 @@
 //! Time of the run begins with the first point that has a reference. Points without one are left out, and so are
 //! points that lack a velocity or an attitude that the others have; what is missing is told at the end.
 
+pub use super::pairs_error::PairsError;
+
 use super::comparison::{Comparison, Quantity};
 use super::gaps::GapList;
-use super::point::{GeodeticPosition, TimeScale, TrajectoryPoint};
+use super::point::{GeodeticPosition, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
+use super::run_ups::RunUps;
 use super::survey::TrajectorySurvey;
 use super::tally::Tally;
 use super::track::{Reference, ReferencePoint, ReferenceTrack, q_nc};
@@ -22,58 +25,6 @@ const POINT: [&str; 2] = ["point", "points"];
 
 /// Share of the points that may be missing.
 const MISSING_SHARE: f64 = 0.01;
-
-/// The files of a solution can't be compared.
-#[derive(Debug, thiserror::Error)]
-pub enum PairsError {
-    /// A file can't be read.
-    #[error("read {0}")]
-    File(#[from] TrajectoryError),
-    /// A file name can't be expanded.
-    #[error(transparent)]
-    Name(#[from] FileNameError),
-    /// It isn't known how the times of the two files differ.
-    #[error(
-        "compare {solution}, which tells the time in {}, with {reference}, in {}: expected source.trajectory.offset, which is \
-         added to the solution's times to get those of the reference, such as \"0 s\"",
-        scales.0.name(), scales.1.name()
-    )]
-    Scales {
-        /// File of the solution.
-        solution: String,
-        /// File of the reference.
-        reference: String,
-        /// Their scales.
-        scales: (TimeScale, TimeScale),
-    },
-    /// The scenario has another place.
-    #[error(
-        "score against {reference}, which begins {:.0} km from the site of the scenario: expected site.latitude = \"{:.4} deg\" and \
-         site.longitude = \"{:.4} deg\", or near", off_m / 1e3, position_deg[0], position_deg[1]
-    )]
-    Site {
-        /// File of the reference.
-        reference: String,
-        /// Distance, m.
-        off_m: f64,
-        /// Its first position, deg.
-        position_deg: [f64; 2],
-    },
-    /// The files are of different times.
-    #[error(
-        "compare {solution} with {reference}: found no point that has a reference; the solution is from {:.3} to {:.3} s, and the reference from {:.3} to {:.3} s \
-         of the same time",
-        spans_s[0], spans_s[1], spans_s[2], spans_s[3]
-    )]
-    Apart {
-        /// File of the solution.
-        solution: String,
-        /// File of the reference.
-        reference: String,
-        /// Beginning and end of both on the scale of the reference, s.
-        spans_s: [f64; 4],
-    },
-}
 
 /// A point of the solution and the reference at its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +47,8 @@ pub struct SolutionPairs {
     survey: TrajectorySurvey,
     /// Time of the first point that is scored.
     from_ns: i64,
+    run_ups: RunUps,
+    rehearsal: bool,
     offset_ns: i64,
     period_ns: u64,
     /// Longest time of the run, ns.
@@ -105,6 +58,9 @@ pub struct SolutionPairs {
     pairs: u64,
     /// True as long as every position, velocity and attitude of the solution is that of the reference.
     identical: [bool; 3],
+    /// First heading, rad, and whether another one is different.
+    first_heading_rad: Option<f64>,
+    heading_varies: bool,
     comparison: Comparison,
     /// Points of the solution that are scored, and left out for a reason.
     points: Tally,
@@ -115,6 +71,7 @@ pub struct SolutionPairs {
     apart: Apart,
 }
 
+const OFF: &str = "points while the unit was without power, or before it was switched on";
 const SKIPPED: &str = "points before the time that is scored";
 const INCOMPLETE: &str = "points without the position, velocity or attitude that the others have";
 const UNREFERRED: &str = "points without a reference at their time";
@@ -181,14 +138,21 @@ impl SolutionPairs {
             SolutionReference::Heading { heading_rad, uncertainty_rad } => {
                 (Reference::heading(*heading_rad, *uncertainty_rad), 0, Apart::default())
             }
+            SolutionReference::Unknown => (Reference::unknown(), 0, Apart::default()),
             SolutionReference::File(file) => {
                 let named = (of_solution.display().to_string(), &survey);
                 Self::open_reference(named, spec, (&path(file)?, file), site_rad)?
             }
         };
+        let run_ups = RunUps::of(&spec.run_ups, &survey)
+            .map_err(|reason| TrajectoryError::new(&of_solution, reason))?;
+        // The plan of a heading test is that of its run-ups.
+        let duration_s = duration_s.filter(|_| run_ups.is_none());
         Ok(Self {
             solution: TrajectoryReader::open(&of_solution, &spec.solution.format)?,
             reference,
+            run_ups,
+            rehearsal: spec.rehearsal,
             from_ns: survey.span_ns.0.saturating_add(spec.skip_ns),
             gaps: GapList::new(survey.period_ns),
             comparison: Comparison::of_points(survey.points),
@@ -200,6 +164,8 @@ impl SolutionPairs {
             last_ns: 0,
             pairs: 0,
             identical: [true; 3],
+            first_heading_rad: None,
+            heading_varies: false,
             points: Tally::default(),
             of_file: (0, Vec::new()),
             scored: None,
@@ -263,6 +229,9 @@ impl SolutionPairs {
     /// in the duration.
     #[must_use]
     pub fn planned(&self) -> u64 {
+        if let Some(planned_ns) = self.run_ups.planned_ns() {
+            return planned_ns / self.period_ns;
+        }
         let span_ns = u64::try_from(self.survey.span_ns.1 - self.from_ns).unwrap_or(0);
         let whole = (span_ns + self.period_ns / 2) / self.period_ns + 1;
         whole.min((self.until_ns.saturating_add(self.period_ns / 2)) / self.period_ns)
@@ -274,6 +243,20 @@ impl SolutionPairs {
     /// If a file is damaged, or no point has a reference.
     pub fn next_pair(&mut self) -> Result<Option<SolutionPair>, PairsError> {
         while let Some(point) = self.next_point()? {
+            let Some(run_up) = self.run_ups.take(point.time_ns) else {
+                let place = self.solution.place();
+                self.points.left_out(1, OFF, || place);
+                continue;
+            };
+            if run_up.is_first {
+                // Nothing is missing while the unit has no power.
+                self.scored = None;
+            }
+            if point.is_without() {
+                self.points.point(1);
+                self.comparison.push_without(run_up.time_ns.saturating_add(self.period_ns));
+                continue;
+            }
             let lacks = (self.survey.position && point.position.is_none())
                 || (self.survey.velocity && point.velocity_mps.is_none())
                 || (self.survey.attitude && point.attitude.is_none())
@@ -287,7 +270,10 @@ impl SolutionPairs {
             };
             let at_ns = point.time_ns.saturating_add(self.offset_ns);
             let reference = match reason {
-                None => self.reference.at(at_ns)?.ok_or(UNREFERRED),
+                None => {
+                    let there = self.reference.at(at_ns)?.ok_or(UNREFERRED);
+                    there.map(|there| there.turned(run_up.azimuth_rad))
+                }
                 Some(reason) => Err(reason),
             };
             let reference = match reference {
@@ -305,7 +291,10 @@ impl SolutionPairs {
                 here.longitude_rad -= turns * TAU;
             }
             let first_ns = *self.first_ns.get_or_insert(point.time_ns);
-            let since_ns = u64::try_from(point.time_ns - first_ns).unwrap_or(0);
+            let since_ns = match self.run_ups.is_none() {
+                true => u64::try_from(point.time_ns - first_ns).unwrap_or(0),
+                false => run_up.time_ns,
+            };
             let time_ns = since_ns.saturating_add(self.period_ns);
             if time_ns > self.until_ns.saturating_add(self.period_ns / 2) {
                 break;
@@ -315,6 +304,11 @@ impl SolutionPairs {
             self.points.point(1);
             self.step(point.time_ns);
             self.comparison.push(time_ns, &point, &reference);
+            if let Some(attitude) = point.attitude {
+                self.run_ups.heading(run_up.number, attitude.heading_rad);
+                let first_rad = *self.first_heading_rad.get_or_insert(attitude.heading_rad);
+                self.heading_varies |= first_rad != attitude.heading_rad;
+            }
             let same = [
                 point.position.zip(reference.position).is_some_and(|(here, there)| {
                     here.latitude_rad == there.latitude_rad
@@ -422,6 +416,15 @@ impl SolutionPairs {
     /// Describes what makes the comparison so far no evidence; `None`: nothing does.
     #[must_use]
     pub fn doubt(&self) -> Option<String> {
+        if self.rehearsal {
+            return Some(
+                "a rehearsal with a simulated unit, whose TAG blocks tell the time, is no evidence"
+                    .to_owned(),
+            );
+        }
+        if !self.run_ups.is_none() {
+            return self.run_ups.doubt(self.survey.period_ns).or_else(|| self.likeness_doubt());
+        }
         let expected = (self.last_ns + self.period_ns / 2) / self.period_ns;
         let missing = expected.saturating_sub(self.pairs);
         if missing as f64 > MISSING_SHARE * expected as f64 {
@@ -429,9 +432,19 @@ impl SolutionPairs {
                 "{missing} of {expected} points of the solution are missing, incomplete, or have no reference"
             ));
         }
+        self.likeness_doubt()
+    }
+
+    /// Describes a solution that is constant, or that of its reference.
+    fn likeness_doubt(&self) -> Option<String> {
         let likeness = |quantity| self.comparison.likeness(quantity);
         let quantities = Quantity::ALL.map(likeness);
-        if self.pairs > 1 && !quantities.iter().any(|likeness| likeness.solution_varies()) {
+        // A table that turns the unit rounds the differences of a constant heading.
+        let varies = match self.run_ups.is_none() {
+            true => quantities.iter().any(|likeness| likeness.solution_varies()),
+            false => self.heading_varies,
+        };
+        if self.pairs > 1 && !varies {
             return Some(format!(
                 "no number of the solution changes over its {} points: constants show nothing of an instrument",
                 self.pairs

@@ -147,7 +147,7 @@ impl PointAttitude {
     }
 }
 
-/// A point of a trajectory: at least one of position and attitude.
+/// A point of a trajectory: at least one of position and attitude, or the answer of an instrument that has neither yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryPoint {
     /// Time on the scale of the file, ns.
@@ -167,6 +167,12 @@ pub struct TrajectoryPoint {
 }
 
 impl TrajectoryPoint {
+    /// True for the answer of an instrument that has no heading yet.
+    #[must_use]
+    pub fn is_without(&self) -> bool {
+        self.position.is_none() && self.attitude.is_none()
+    }
+
     /// Roll, pitch and heading, rad, where all three are known.
     #[must_use]
     pub fn attitude_rad(&self) -> Option<[f64; 3]> {

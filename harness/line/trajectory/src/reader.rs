@@ -53,7 +53,9 @@ impl TrajectoryReader {
             TrajectoryFormat::Csv(columns) => {
                 Box::new(ColumnsReader::new(file, columns).map_err(fail)?)
             }
-            TrajectoryFormat::Nmea(choice) => nmea::open(file, choice).map_err(fail)?,
+            TrajectoryFormat::Nmea(choice) => {
+                nmea::open(file, choice).map_err(|problem| fail(problem.to_string()))?
+            }
             TrajectoryFormat::Rtklib => Box::new(RtklibReader::new(file).map_err(fail)?),
             TrajectoryFormat::Sbet => Box::new(SbetReader::new(file).map_err(fail)?),
             TrajectoryFormat::Messages(protocol) => {

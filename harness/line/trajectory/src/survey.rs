@@ -14,6 +14,11 @@ const OUT_OF_ORDER_SHARE: f64 = 0.1;
 /// Part of a period by which the mean of many jittering stamps may be off.
 const JITTER: f64 = 1e-4;
 
+/// Largest part of a period by which the mean of intervals that scatter may be off.
+const SCATTER_MAX: f64 = 0.03;
+/// Number of intervals from which the period of such a file is known.
+const INTERVALS_MAX: usize = 4096;
+
 /// What a file holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrajectorySurvey {
@@ -60,17 +65,24 @@ impl TrajectorySurvey {
         let mut reader = TrajectoryReader::open(path, format)?;
         let mut span_ns: Option<(i64, i64)> = None;
         let mut first = None;
-        let mut points = 0_u64;
+        // Points, and the answers without a heading among them.
+        let (mut points, mut without) = (0_u64, 0_u64);
         // Positions, velocities, headings, tilts.
         let mut counts = [0_u64; 4];
         // By the majority vote of Boyer and Moore, which needs no memory: a time between two points that more
         // than half of them have is found.
         let (mut period_ns, mut votes) = (0, 0_u64);
+        // Where no time has a majority, as with times of arrival: the first intervals.
+        let mut first_intervals_ns: Vec<i64> = Vec::new();
         // Intervals that are about that, and their sum.
         let (mut alike, mut alike_ns) = (0_i64, 0_i64);
         while let Some(point) = reader.next()? {
             points += 1;
-            first.get_or_insert(point);
+            if point.is_without() {
+                without += 1;
+            } else {
+                first.get_or_insert(point);
+            }
             let has = [
                 point.position.is_some(),
                 point.velocity_mps.is_some(),
@@ -82,6 +94,9 @@ impl TrajectorySurvey {
             }
             if let Some((_, last_ns)) = span_ns {
                 let exactly_ns = point.time_ns - last_ns;
+                if first_intervals_ns.len() < INTERVALS_MAX {
+                    first_intervals_ns.push(exactly_ns);
+                }
                 let apart_ns = rounded(exactly_ns);
                 if votes == 0 && apart_ns != period_ns {
                     (period_ns, alike, alike_ns) = (apart_ns, 0, 0);
@@ -107,16 +122,21 @@ impl TrajectorySurvey {
                 ),
             ));
         }
-        let (Some(span_ns), Some(first), true) = (span_ns, first, points > 1) else {
+        let found = points - without;
+        let (Some(span_ns), Some(first), true) = (span_ns, first, found > 1) else {
             let reason =
-                format!("found {points} points with a position or a heading, expected two or more");
+                format!("found {found} points with a position or a heading, expected two or more");
             return Err(TrajectoryError::new(path, reason));
         };
         // A unit that sends on without a solution hasn't ended where its last point is.
         let heard_ns = reader.heard_ns().filter(|heard_ns| heard_ns - span_ns.1 > period_ns.max(1));
         let span_ns = (span_ns.0, heard_ns.unwrap_or(span_ns.1));
-        let period_ns = whole_rate(period_ns, alike_ns as f64 / alike.max(1) as f64);
-        let most = |count: u64| count as f64 >= SHARE * points as f64;
+        let has_majority = 2 * alike.unsigned_abs() + 1 >= points - 1;
+        let period_ns = match has_majority {
+            true => whole_rate(period_ns, alike_ns as f64 / alike.max(1) as f64),
+            false => scattered(&mut first_intervals_ns).unwrap_or(period_ns),
+        };
+        let most = |count: u64| count as f64 >= SHARE * found as f64;
         let mut account = reader.account(role);
         let [position, velocity, attitude, tilt] = counts.map(most);
         // An attitude lacks nothing that was counted already.
@@ -141,6 +161,23 @@ impl TrajectorySurvey {
             account,
         })
     }
+}
+
+/// The period of intervals that scatter, as times of arrival do: the mean of those that are about their median, or that of
+/// a whole rate as near to it as their scatter leaves open. `None` without intervals.
+fn scattered(intervals_ns: &mut [i64]) -> Option<i64> {
+    intervals_ns.sort_unstable();
+    let count = intervals_ns.len();
+    let middle_ns = *intervals_ns.get(count / 2)?;
+    let near = intervals_ns.iter().filter(|ns| 2 * (**ns - middle_ns).abs() < middle_ns);
+    let (alike, sum_ns) = near.fold((0_u32, 0_i64), |(count, sum), ns| (count + 1, sum + ns));
+    let mean_ns = sum_ns as f64 / f64::from(alike.max(1));
+    // The mean of successive intervals is off by the jitter of the first and the last stamp alone.
+    let spread_ns = intervals_ns[count - 1 - count / 20] - intervals_ns[count / 20];
+    let off_ns = (4.0 * spread_ns as f64 / count as f64).min(SCATTER_MAX * mean_ns);
+    let whole_ns = 1e9 / (1e9 / mean_ns).round().max(1.0);
+    let is_whole = (mean_ns - whole_ns).abs() <= off_ns;
+    Some((if is_whole { whole_ns } else { mean_ns }).round() as i64)
 }
 
 /// The period that intervals with this mean have, which are about `about_ns`: that of a whole rate or a round time, if

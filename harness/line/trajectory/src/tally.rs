@@ -3,6 +3,10 @@
 use octant_account::{Account, AccountEntry};
 use octant_base::number::plain;
 
+/// Most qualities that are counted apart.
+const QUALITIES_MAX: usize = 32;
+const OTHER_QUALITIES: &str = "other qualities";
+
 /// Reason of a unit whose time isn't after that of a point before it.
 pub(crate) const OUT_OF_ORDER: &str =
     "out of order, of a time that isn't after a point before them";
@@ -22,7 +26,7 @@ pub(crate) struct Tally {
     /// Units of the last point, which may yet be left out.
     of_point: u64,
     left_out: Vec<Counted>,
-    qualities: Vec<(&'static str, u64)>,
+    qualities: Vec<(String, u64)>,
 }
 
 impl Tally {
@@ -60,11 +64,16 @@ impl Tally {
         self.left_out(units, kind, place);
     }
 
-    /// Counts the quality of a point, in the file's own words.
-    pub(crate) fn quality(&mut self, quality: &'static str) {
-        match self.qualities.iter_mut().find(|(there, _)| *there == quality) {
-            Some((_, count)) => *count += 1,
-            None => self.qualities.push((quality, 1)),
+    /// Counts the quality of a point, in the file's own words. From a number of them on all others are one.
+    pub(crate) fn quality(&mut self, quality: &str) {
+        if let Some((_, count)) = self.qualities.iter_mut().find(|(there, _)| there == quality) {
+            *count += 1;
+        } else if self.qualities.len() < QUALITIES_MAX {
+            self.qualities.push((quality.to_owned(), 1));
+        } else if let Some((_, count)) = self.qualities.get_mut(QUALITIES_MAX) {
+            *count += 1;
+        } else {
+            self.qualities.push((OTHER_QUALITIES.to_owned(), 1));
         }
     }
 

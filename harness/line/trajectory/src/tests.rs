@@ -30,6 +30,8 @@ const NMEA: TrajectoryFormat = TrajectoryFormat::Nmea(NmeaChoice {
     fixes_alone: false,
     points: None,
     heading_time: None,
+    heading_delay: None,
+    tells_none: false,
 });
 
 /// Reason why a file is refused once it was read to its end.

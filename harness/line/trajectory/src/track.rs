@@ -32,6 +32,17 @@ pub struct ReferencePoint {
 }
 
 impl ReferencePoint {
+    /// The reference of an instrument that a level table has turned by an angle.
+    pub(crate) fn turned(self, azimuth_rad: f64) -> Self {
+        if azimuth_rad == 0.0 {
+            return self;
+        }
+        let turned = self
+            .attitude_rad()
+            .map(|[roll, pitch, heading]| q_nc([roll, pitch, heading + azimuth_rad]));
+        Self { q_nc: turned, ..self }
+    }
+
     /// Roll, pitch and heading, rad.
     #[must_use]
     pub fn attitude_rad(&self) -> Option<[f64; 3]> {
@@ -74,6 +85,18 @@ impl Reference {
                 attitude_rad: sigma_rad.map(|sigma_rad| [sigma_rad; 3]),
                 ..PointSigma::default()
             },
+            digit_rad: [0.0; 3],
+        })
+    }
+
+    /// No reference: nothing is known of the truth.
+    pub(crate) fn unknown() -> Self {
+        Self::Constant(ReferencePoint {
+            position: None,
+            velocity_mps: None,
+            q_nc: None,
+            tilt: false,
+            sigma: PointSigma::default(),
             digit_rad: [0.0; 3],
         })
     }

@@ -45,7 +45,8 @@ pub(crate) struct OperatorPlan {
 impl OperatorWays {
     /// Checks that somebody can be asked, before anything is written; `None`: nobody attends to the run.
     pub(crate) fn plan(&self, scenario: &Scenario) -> Result<Option<OperatorPlan>, Failure> {
-        let instrument = scenario.source.instrument().is_some();
+        let instrument =
+            scenario.source.instrument().is_some() || scenario.solution_line().is_some();
         let by_clock = scenario.realtime.by_clock;
         let is_bench = instrument || by_clock || scenario.endpoint.device().is_some();
         let Some(first) = scenario.operator.first().map(|step| &step.id) else {

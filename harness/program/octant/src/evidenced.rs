@@ -71,6 +71,9 @@ pub(crate) fn run(request: &RunRequest) -> Result<Verdict, Failure> {
 /// Runs a scenario and writes its evidence.
 pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<Evidence, Failure> {
     let asked = Asked::of(request)?;
+    if asked.scenario.solution_line().is_some() {
+        return crate::line_solution::evidence(request, asked, follower);
+    }
     let (scenario, seed) = (&asked.scenario, asked.seed);
     // Contradictions, and sources that can't be opened, are reported before anything is written. A
     // real instrument doesn't repeat its measurements, so it has no twin.
@@ -125,8 +128,10 @@ fn tell_choices(scenario: &Scenario) -> Result<(), Failure> {
 /// Records of the operator of a run, and the reasons why they make it no evidence.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
-    records: Vec<OperatorRecord>,
-    reasons: Vec<String>,
+    /// The records.
+    pub(crate) records: Vec<OperatorRecord>,
+    /// The reasons.
+    pub(crate) reasons: Vec<String>,
 }
 
 /// Scenario of a request, with its changes.
@@ -147,7 +152,10 @@ pub(crate) struct Begun {
     pub(crate) folder: RunFolder,
     started: SystemTime,
     fmus: Vec<FmuFacts>,
-    inputs: Vec<InputFacts>,
+    /// Files that are scored or run on.
+    pub(crate) inputs: Vec<InputFacts>,
+    /// Facts of a bench that isn't part of the runs themselves.
+    pub(crate) bench: Option<Value>,
     key: Option<Arc<SigningKey>>,
 }
 
@@ -213,7 +221,7 @@ impl Asked {
         let draws = DrawnValues::of(&self.scenario, &Seeded(self.seed));
         let resolved = self.scenario.to_resolved_toml(self.seed, &draws);
         write(&folder.path().join("scenario.toml"), resolved)?;
-        Ok(Begun { folder, started, fmus, inputs, key })
+        Ok(Begun { folder, started, fmus, inputs, bench: None, key })
     }
 
     /// Writes the evidence of runs that have ended.
@@ -225,7 +233,7 @@ impl Asked {
         answers: Answers,
     ) -> Result<Evidence, Failure> {
         let Self { scenario, seed, left_out } = self;
-        let Begun { folder, started, fmus, inputs, key } = begun;
+        let Begun { folder, started, fmus, inputs, bench: around, key } = begun;
         let unfinished = |ended| matches!(ended, Ended::Cancelled | Ended::Broken);
         let interrupted = runs.iter().any(|run| {
             unfinished(run.ended)
@@ -253,7 +261,7 @@ impl Asked {
         let instrument = primary.bench.instrument.as_ref();
         let accounts = primary.bench.accounts();
         accounts.iter().for_each(tell_account);
-        let bench = instrument.and_then(|bench| serde_json::to_value(bench).ok());
+        let bench = instrument.and_then(|bench| serde_json::to_value(bench).ok()).or(around);
         let bench = with_power(bench, primary.bench.power.as_deref());
         let realtime = primary.bench.kept.as_ref().map(|kept| kept.granted.clone());
         let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());

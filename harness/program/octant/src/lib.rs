@@ -24,6 +24,7 @@ mod faults;
 mod fmu;
 mod followed;
 mod given;
+mod line_solution;
 mod live;
 mod minimise;
 pub mod new;

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::run_request::RunRequest;
 use crate::source_uri::from_here;
 use clap::Args;
+use octant_scenario::trajectory::SolutionSpec;
 use octant_scenario::{FilePlaces, Scenario, SourceSpec};
 use octant_trajectory::{TrajectorySurvey, point::SECOND_NS};
 use octant_verdict::Verdict;
@@ -157,6 +158,20 @@ fn found(path: &Path, text: Option<&str>, set: &[String]) -> Result<Vec<String>,
     let SourceSpec::Solution(spec) = &scenario.source else {
         return Err(Failure::input("failed to score a solution: another source is set"));
     };
+    if spec.line.is_some() {
+        return Err(Failure::input(format!(
+            "found {}, a port, expected a file: octant run takes a solution from a port",
+            spec.solution.file.0
+        )));
+    }
+    keys_of_solution(&scenario, spec)
+}
+
+/// Keys that follow from the file of a solution: the rate of its points, and where it begins.
+pub(super) fn keys_of_solution(
+    scenario: &Scenario,
+    spec: &SolutionSpec,
+) -> Result<Vec<String>, Failure> {
     let file = spec.solution.file.path(&scenario.folder).map_err(Failure::input)?;
     let survey = TrajectorySurvey::of(&file, &spec.solution.format).map_err(Failure::input)?;
     if survey.period_ns > SECOND_NS {
@@ -166,8 +181,11 @@ fn found(path: &Path, text: Option<&str>, set: &[String]) -> Result<Vec<String>,
             octant_base::number::plain(survey.period_ns as f64 * 1e-9, 9)
         )));
     }
+    // Readings of a heading test have their own times, which no rate gives.
+    let is_test = scenario.heading_test.is_some();
+    let period_ns = if is_test { SECOND_NS } else { survey.period_ns };
     // With all digits, so that the period comes out as the whole number of ns that it is.
-    let rate = format!("{}", 1e9 / survey.period_ns as f64);
+    let rate = format!("{}", 1e9 / period_ns as f64);
     let deg = |rad: f64| format!("{:.9} deg", rad.to_degrees());
     let mut found = vec![format!("imu.rate={rate} Hz"), format!("record.rate={rate} Hz")];
     if let Some(first) = survey.first.position {

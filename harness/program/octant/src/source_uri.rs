@@ -9,6 +9,8 @@ use crate::failure::Failure;
 /// If the current folder can't be found.
 pub fn from_here(uri: &str) -> Result<String, Failure> {
     match uri.split_once(':') {
+        // A solution that comes from a port.
+        Some(("solution", port)) if octant_link::Uri::is_one(port) => Ok(uri.to_owned()),
         Some((kind @ ("replay" | "text" | "log" | "fmu" | "solution"), file))
             if !file.is_empty() && !file.starts_with("${") =>
         {

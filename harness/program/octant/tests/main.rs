@@ -64,6 +64,7 @@ mod innovations;
 mod known_limitations;
 #[cfg(unix)]
 mod least_squares_end;
+mod line_solution;
 mod live;
 mod log_source;
 mod measures;

@@ -7,14 +7,15 @@
 //! - [`settle`]: settling time, settle point, root mean square of its readings
 //! - [`repeatability`]: differences of the settle points of several run-ups
 //! - [`motion`]: error after a motion of the table, amplitude and frequency of the error in it
-//! - [`follow`]: error in turns by class of rate, error of transmission and resolution
 //! - [`score`]: all of them together, as in the summary of a run
+//!
+//! Latency, follow-up and transmission of an output against a reference that turns are another subject: `octant-score`,
+//! `heading_output`.
 //!
 //! A reading that is due and isn't in the record, or a record that is too short, gives no value. Angles are
 //! in degrees, differences within ±180°, times in seconds.
 
 pub mod angle;
-pub mod follow;
 pub mod motion;
 mod reading;
 pub mod repeatability;

@@ -214,6 +214,14 @@ impl HeadingScore {
         }
     }
 
+    /// Returns whether a true heading was known: without it nothing has an error, and what is left is scatter, settling and
+    /// repeatability.
+    #[must_use]
+    pub fn knows_truth(&self) -> bool {
+        let points = self.run_ups.iter().flat_map(|one| [one.settle_point, one.after_motion]);
+        points.flatten().all(|point| point.error_deg.is_some())
+    }
+
     /// Returns whether a measure (its path, without bars) is the settling time of a unit that isn't settled: a lower bound.
     #[must_use]
     pub fn is_unsettled(&self, measure: &str) -> bool {

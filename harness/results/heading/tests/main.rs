@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod angles;
-mod follow;
 mod motion;
 mod score;
 mod settle;

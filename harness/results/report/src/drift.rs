@@ -2,6 +2,7 @@
 
 use super::chart::{Band, Chart, Line, Role};
 use super::data::ReportData;
+use super::heading_output;
 use super::scores::scores;
 use super::solution;
 use maud::{Markup, html};
@@ -79,6 +80,9 @@ pub(super) fn drift(data: &ReportData) -> Markup {
         }
         (solution::errors(data))
         (solution::track(data))
+        @if let Some(output) = summary.navigation.as_ref().and_then(|n| n.heading_output.as_deref()) {
+            (heading_output::section(output))
+        }
         (scores(
             &all.iter().map(|(label, _, n)| (*label, *n)).collect::<Vec<_>>(),
             summary.reference.as_ref().and_then(|r| r.random_walk.as_ref()),

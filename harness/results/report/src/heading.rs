@@ -11,6 +11,9 @@ pub(super) fn heading(summary: &Summary) -> Markup {
     let has_after = test.run_ups.iter().any(|one| one.after_motion.is_some());
     html! {
         p.hint { (hint(test)) }
+        @if !test.knows_truth() {
+            p.hint { "Errors are not tested: no true heading is known." }
+        }
         table {
             thead { tr {
                 th.n { "Run-up" } th.n { "Settled after, min" } th.n { "Settle point, deg" }

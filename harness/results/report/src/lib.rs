@@ -26,6 +26,7 @@ pub mod filtered;
 mod followed;
 mod gimbals;
 mod heading;
+mod heading_output;
 pub mod innovations;
 pub mod inputs;
 pub mod marks;

@@ -79,3 +79,45 @@ fn a_row_without_a_result_is_not_tested_and_more_rows_than_a_page_holds_are_coun
     assert_eq!(html.matches("<tr>").count(), 1 + ROWS_MAX);
     assert!(html.contains("3 more are among the requirements below."));
 }
+
+#[test]
+fn the_output_chain_has_a_section_with_an_uncertainty_for_each_measure() {
+    let mut data = data();
+    assert!(!render(&data).contains("id=\"heading-output\""), "a run without an output");
+    let follow_up = octant_score::heading_output::FollowUpScore {
+        max_deg: 0.42,
+        rms_deg: 0.2,
+        uncertainty_deg: 0.07,
+        rate_max_degps: 9.5,
+        points: 512,
+    };
+    data.summary.navigation.as_mut().unwrap().heading_output =
+        Some(Box::new(octant_score::heading_output::HeadingOutputScore {
+            resolution_deg: 0.1,
+            constant_error_deg: -0.3,
+            transmission_error_deg: 0.051,
+            transmission_rms_deg: 0.03,
+            transmission_uncertainty_deg: 0.012,
+            latency_s: Some(0.123),
+            latency_uncertainty_s: Some(0.017),
+            follow_up_10: Some(follow_up),
+            follow_up_20: None,
+        }));
+    let html = render(&data);
+    let (_, section) = html.split_once("id=\"heading-output\"").unwrap();
+    let (section, _) = section.split_once("</table>").unwrap();
+    for text in [
+        "Latency",
+        ">0.123<",
+        "± 0.0170",
+        ">0.420<",
+        "± 0.0700",
+        "512 points",
+        "not tested: no turn of this class in the reference",
+        ">0.0510<",
+        "± 0.0120",
+        "± 0.0500",
+    ] {
+        assert!(section.contains(text), "{text} is missing: {section}");
+    }
+}

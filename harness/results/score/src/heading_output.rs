@@ -53,6 +53,10 @@ pub struct HeadingOutputScore {
     pub transmission_error_deg: f64,
     /// Its root mean square, deg.
     pub transmission_rms_deg: f64,
+    /// Expanded uncertainty (95 %) of both, deg, without that of the reference: by the constant error and by the times of
+    /// headings that have none.
+    #[serde(default)]
+    pub transmission_uncertainty_deg: f64,
     /// Latency, s; null if the reference turns too little to show it.
     pub latency_s: Option<f64>,
     /// Its expanded uncertainty (95 %), s: by what is left of the errors, by half of the last digit, and by
@@ -111,8 +115,10 @@ impl HeadingOutputScore {
             left_count += 1;
         }
         let left_rms = libm::sqrt(left_square / f64::from(left_count.max(1)));
-        let uncertainty_rad =
-            libm::hypot(0.5 * digit_rad, EXPANDED * left_rms / libm::sqrt(used.len() as f64));
+        let of_mean_rad = EXPANDED * left_rms / libm::sqrt(used.len() as f64);
+        let uncertainty_rad = libm::hypot(0.5 * digit_rad, of_mean_rad);
+        let rates = used.iter().filter_map(|k| track.rate(*k));
+        let late_rad = rates.fold(0.0_f64, |most, rate| most.max(rate.abs())) * doubt_s;
         let class = |index: usize| {
             let above = if index == 0 { 0.0 } else { CLASSES_DEGPS[index - 1] };
             let mut score = FollowUpScore {
@@ -144,6 +150,7 @@ impl HeadingOutputScore {
             constant_error_deg: constant_rad.to_degrees(),
             transmission_error_deg: left_max.to_degrees(),
             transmission_rms_deg: left_rms.to_degrees(),
+            transmission_uncertainty_deg: libm::hypot(of_mean_rad, late_rad).to_degrees(),
             latency_s,
             latency_uncertainty_s: fit.map(|fit| libm::hypot(fit.uncertainty_s, doubt_s)),
             follow_up_10: class(0),
@@ -161,6 +168,9 @@ impl HeadingOutputScore {
             Some("latency_s") => self.latency_uncertainty_s.unwrap_or(0.0),
             Some("constant_error_deg") => 0.5 * self.resolution_deg,
             // Rounding is part of the error of transmission, and not in doubt.
+            Some("transmission_error_deg" | "transmission_rms_deg") => {
+                self.transmission_uncertainty_deg
+            }
             _ => 0.0,
         }
     }

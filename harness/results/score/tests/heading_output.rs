@@ -101,6 +101,9 @@ fn times_in_doubt_and_last_digits_are_in_the_uncertainty() {
     near(least, 0.05, 2e-3);
     // At up to 6 deg/s.
     near(most, 0.05_f64.hypot(0.6), 5e-3);
+    let [least, most] = [sure, doubted].map(|score| score.uncertainty("transmission_error_deg"));
+    assert!(least < 2e-3, "{least}");
+    near(most, 0.6, 5e-3);
 }
 
 #[test]
@@ -113,4 +116,45 @@ fn gaps_are_left_out_and_few_points_give_no_score() {
     near(found.latency_s.unwrap(), 0.15, 1e-4);
     assert_eq!(found.follow_up_10.unwrap().points, with_gap.len() as u64 - 4);
     assert_eq!(HeadingOutputScore::of(&all[..20], 0.0, 0.0), None);
+}
+
+#[test]
+fn a_delay_is_an_error_of_rate_times_delay_in_its_class() {
+    let delay_s = 0.04;
+    for sign in [1.0, -1.0] {
+        // A turn at 8 deg/s, then one at 16 deg/s, across north.
+        let turned = move |t_s: f64| {
+            300.0 + sign * if t_s < 10.0 { 8.0 * t_s } else { 80.0 + 16.0 * (t_s - 10.0) }
+        };
+        let all = pairs(201, 10.0, |t_s| [turned(t_s - delay_s), turned(t_s)]);
+        let found = HeadingOutputScore::of(&all, 0.0, 0.0).unwrap();
+        near(found.latency_s.unwrap(), delay_s, 2e-3);
+        // Where one rate becomes the other, rates are means of both.
+        near(found.follow_up_10.unwrap().max_deg, 8.0 * delay_s, 0.02);
+        near(found.follow_up_20.unwrap().max_deg, 16.0 * delay_s, 0.02);
+        assert!(found.follow_up_10.unwrap().rate_max_degps < 8.0 + 1e-9);
+        // Alone, neither is in the other's class.
+        let fast = HeadingOutputScore::of(&all[110..], 0.0, 0.0).unwrap();
+        assert_eq!(fast.follow_up_10, None);
+    }
+}
+
+#[test]
+fn an_error_at_rest_is_no_follow_up_error() {
+    let all = pairs(100, 10.0, |t_s| [8.0 * t_s + 0.7, 8.0 * t_s]);
+    let found = HeadingOutputScore::of(&all, 0.0, 0.0).unwrap();
+    near(found.constant_error_deg, 0.7, 1e-9);
+    near(found.follow_up_10.unwrap().max_deg, 0.0, 1e-9);
+}
+
+#[test]
+fn steps_of_a_transmission_are_half_a_step_wrong_at_most() {
+    let step = 1.0 / 6.0;
+    let stepped = |heading: f64| (heading / step).round() * step;
+    let all = pairs(3600, 10.0, |t_s| [stepped(t_s), t_s]);
+    let found = HeadingOutputScore::of(&all, f64::to_radians(step), 0.0).unwrap();
+    let error = found.transmission_error_deg;
+    assert!(error <= 0.5 * step + 1e-3 && error > 0.4 * step, "{error}");
+    near(found.resolution_deg, step, 1e-12);
+    assert_eq!(HeadingOutputScore::of(&[], 0.0, 0.0), None);
 }

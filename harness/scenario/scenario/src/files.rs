@@ -13,9 +13,10 @@ const OF_PORT: &str = key!(source.live.description);
 const OF_LOG: &str = key!(source.log.description);
 
 /// Keys whose text is the name of a file, or a URI with one.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     SOURCE,
     ENDPOINT,
+    key!(source.trajectory.file),
     key!(source.text.gyro.file),
     key!(source.text.accelerometer.file),
     key!(source.reference.file),
@@ -66,6 +67,7 @@ impl Scenario {
     #[must_use]
     pub fn devices(&self) -> Vec<String> {
         let source = self.source.instrument().map(|instrument| instrument.uri.to_string());
+        let source = source.or_else(|| Some(self.solution_line()?.uri.to_string()));
         let endpoint = self.endpoint.device().map(|live| live.uri.to_string());
         let table = self.drive.as_ref().map(|drive| drive.port.clone());
         source.into_iter().chain(endpoint).chain(table).collect()
@@ -92,6 +94,7 @@ pub(crate) fn replace(document: &mut Table, mut place: impl FnMut(&str) -> Optio
             (SOURCE | ENDPOINT, None) => continue,
             // A port, which is no file.
             (SOURCE, Some(_)) if octant_link::Uri::is_one(written) => continue,
+            (SOURCE, Some(("solution", port))) if octant_link::Uri::is_one(port) => continue,
             (ENDPOINT, Some((scheme, _))) if scheme != "fmu" => continue,
             (SOURCE | ENDPOINT, Some((scheme, file))) => (Some(scheme), file),
             _ => (None, written.as_str()),

@@ -39,6 +39,19 @@ pub struct NmeaChoice {
     pub points: Option<NmeaPoints>,
     /// Time of headings that have none of their own; `None`: the first way that the file allows.
     pub heading_time: Option<HeadingTime>,
+    /// Place of such headings in their cycle; `None`: anywhere from the time of day before them to the next one.
+    pub heading_delay: Option<HeadingDelay>,
+    /// True if an answer without a heading makes a point, too: a heading test tells it from silence.
+    pub tells_none: bool,
+}
+
+/// Time from a time of day to the measurement of the first heading behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadingDelay {
+    /// The time, s; negative: the heading was measured before.
+    pub delay_s: f64,
+    /// How far it may be off (95 %), s.
+    pub uncertainty_s: f64,
 }
 
 /// Sentences of an NMEA file that make a point each.
@@ -83,6 +96,12 @@ pub struct TrajectoryColumns {
     pub velocity: [Option<RecordedColumn>; 2],
     /// Roll, pitch and heading.
     pub attitude: [Option<RecordedColumn>; 3],
+    /// Standard deviations of north and east, of the velocities north and east, and of roll, pitch and heading.
+    pub sigma: [Option<RecordedColumn>; 7],
+    /// Quality of a row, in words or numbers of its own.
+    pub quality: Option<RecordedColumn>,
+    /// Qualities whose rows are left out.
+    pub left_out: Vec<String>,
     /// Radians in a unit of the angles.
     pub angle_rad: f64,
     /// Metres per second in a unit of the velocities.
@@ -101,6 +120,8 @@ pub enum SolutionReference {
         /// Its expanded uncertainty (95 %), rad.
         uncertainty_rad: Option<f64>,
     },
+    /// None: a heading test scores scatter, repeatability and settling, and no errors.
+    Unknown,
 }
 
 impl SolutionReference {
@@ -109,14 +130,47 @@ impl SolutionReference {
     pub fn file(&self) -> Option<&TrajectorySpec> {
         match self {
             Self::File(spec) => Some(spec),
-            Self::Heading { .. } => None,
+            Self::Heading { .. } | Self::Unknown => None,
         }
     }
+}
+
+/// File of a solution that came from a port, in the folder of its run: the name stays relative to the scenario beside it.
+pub const OF_RUN: &str = "octant-solution.nmea";
+
+/// A port from which a solution comes while the run goes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolutionLine {
+    /// The port.
+    pub uri: octant_link::Uri,
+    /// Time without a byte that ends the run.
+    pub silence: std::time::Duration,
+    /// True if the time of the run is that of the TAG blocks that come: a rehearsal with a simulated unit.
+    pub rehearsal: bool,
+}
+
+/// Run-ups of a heading test in a solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolutionRunUps {
+    /// Number of run-ups of the plan; 0: it is no heading test.
+    pub count: u32,
+    /// Time for which the unit stays switched on in each, ns.
+    pub length_ns: i64,
+    /// Times at which the unit was switched on, ns since 1970, UTC; none: one run-up, from the beginning of the file on.
+    pub switched_on_ns: Vec<i64>,
+    /// Angles by which the table had turned the unit in each, rad; none: it stood at zero.
+    pub azimuths_rad: Vec<f64>,
 }
 
 /// A solution, and the trajectory that it is scored against.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolutionSpec {
+    /// The port from which it comes; `None`: it is in a file already.
+    pub line: Option<SolutionLine>,
+    /// True for a rehearsal with a simulated unit, which is no evidence.
+    pub rehearsal: bool,
+    /// Run-ups of a heading test.
+    pub run_ups: SolutionRunUps,
     /// The instrument's solution.
     pub solution: TrajectorySpec,
     /// Time at its beginning that isn't scored, ns.

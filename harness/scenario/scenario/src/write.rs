@@ -7,6 +7,7 @@ use super::keys::{Kind, SCENARIO, Section, key, keys_of};
 use super::model::{AlignmentSpec, MOTIONS, MotionSpec, RequirementSpec, Scenario};
 use super::quantity::UnitDimension;
 use super::resolve::DrawnValues;
+use super::trajectory::OF_RUN;
 use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
 use octant_toml_tree::{Entry, Node, Table, Value, join, write_value};
@@ -192,7 +193,8 @@ impl Scenario {
     fn write_files(&self, document: &mut Table) {
         let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
         let absolute = |file: &str| {
-            if file.starts_with("${") || Path::new(file).is_absolute() {
+            let stays = file.starts_with("${") || file == OF_RUN;
+            if stays || Path::new(file).is_absolute() {
                 file.to_owned()
             } else {
                 folder.join(file).display().to_string()

@@ -4,3 +4,4 @@ mod errors;
 mod faults;
 mod json_schema;
 mod shipped;
+mod solution_line;

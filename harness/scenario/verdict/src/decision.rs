@@ -184,7 +184,12 @@ fn is_referred(bare: &str) -> bool {
     // Times of a reference, and the numbers of the output itself.
     let of_itself = matches!(
         name,
-        "latency_s" | "latency_uncertainty_s" | "resolution_deg" | "points" | "rate_max_degps"
+        "latency_s"
+            | "latency_uncertainty_s"
+            | "transmission_uncertainty_deg"
+            | "resolution_deg"
+            | "points"
+            | "rate_max_degps"
     );
     match own.split('.').next() {
         Some("navigation") if own.contains("heading_output.") && of_itself => false,

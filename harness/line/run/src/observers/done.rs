@@ -6,7 +6,7 @@ use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_calibration::state_machine::prior_after_alignment;
 use octant_endpoint::Tells;
 use octant_sample::{GimbalAngles, Mode, Output};
-use octant_scenario::{CalibrationSpec, Method, Scenario};
+use octant_scenario::{CalibrationSpec, Method, Scenario, SourceSpec};
 use octant_score::work::Work;
 
 /// Largest deviation of a commanded angle from the planned one, rad: a device may store degrees in
@@ -93,11 +93,15 @@ impl PlannedWork {
         let left_s =
             samples.map(|samples| samples as f64 * period_s - calibration_s.unwrap_or(0.0));
         let left_s = left_s.filter(|left_s| *left_s > 0.0);
+        let is_solution = matches!(scenario.source, SourceSpec::Solution(_));
         let work = Work {
             stops: (!stops.is_empty()).then_some(stops.len() as u64),
             calibration_s,
             references: calibration.and_then(|c| references(c, core.sample_period_ns)),
-            navigation_s: scenario.navigation.as_ref().and_then(|n| n.duration_s.or(left_s)),
+            // The headings of a solution say themselves what is missing of a test, from switching on.
+            navigation_s: (scenario.navigation.as_ref())
+                .filter(|_| !(is_solution && scenario.heading_test.is_some()))
+                .and_then(|n| n.duration_s.or(left_s)),
         };
         let alignment_s = core.alignment.duration_s().unwrap_or(0.0);
         let prior = match core.calibration.as_ref().map(|calibration| &calibration.estimator) {

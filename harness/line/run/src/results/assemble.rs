@@ -1,11 +1,12 @@
 //! Assembles summary, report and verdict from the methods of a run.
 
-use super::compared::{band, digits, heading_output, output_path, stated, timing};
+use super::compared::{heading_output, stated, timing};
 use super::difference::difference;
 use super::findings::findings;
 use super::method::MethodRun;
 use super::refusal::{RefusedRun, explained};
 use super::scores_text::{alignment_line, heading_lines, navigation_lines, solution_line};
+use super::uncertainty::{Found, uncertainty};
 use crate::observers::at_rest::instrument_noise;
 use octant_base::display::DisplayUnits;
 use octant_base::number;
@@ -30,7 +31,7 @@ use octant_score::summary::{
 };
 use octant_turntable::TableAxis;
 use octant_verdict::Verdict;
-use octant_verdict::decision::{DecisionRule, NavigationContext};
+use octant_verdict::decision::NavigationContext;
 use octant_verdict::equipment::Day;
 use std::collections::BTreeMap;
 
@@ -160,6 +161,9 @@ pub fn assemble_with(
         baseline.as_ref().map_or_else(SolutionSeries::default, filtered);
     let compared = primary.bench.compared.take();
     let output = compared.as_ref().and_then(|compared| heading_output(compared));
+    if let (Some(compared), Some(heading)) = (&compared, &mut primary.observed.heading) {
+        heading.complete(compared.without_heading_ns(), compared.coarsest_heading()[0]);
+    }
     if let Some(navigation) = &mut primary.navigation {
         navigation.heading_output = output.map(Box::new);
     }
@@ -214,24 +218,8 @@ pub fn assemble_with(
     let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
     let heading = summary.heading.clone();
     judge_by(&mut summary, &requirements, &findings, |measure| {
-        let of_resolution = heading
-            .as_ref()
-            .map_or(0.0, |heading| heading.resolution_error(measure.trim_matches('|')));
-        if scenario.decision.rule() == DecisionRule::SimpleAcceptance {
-            return Ok(0.0);
-        }
-        let stated = scenario.decision.uncertainty(measure, &against);
-        let of_file = compared.as_ref().and_then(|compared| band(compared, measure, scenario));
-        let known = match (stated, of_file) {
-            (Ok(stated), of_file) => of_file.map_or(stated, |of_file| stated.max(of_file)),
-            (Err(_), Some(of_file)) => of_file,
-            (unknown, None) => return unknown,
-        };
-        let rounded = match (output_path(measure), &output) {
-            (Some(path), Some(output)) => output.uncertainty(path),
-            _ => compared.as_ref().map_or(0.0, |c| digits(c, measure, scenario)),
-        };
-        Ok(libm::hypot(known, rounded) + of_resolution)
+        let found = Found { compared: compared.as_deref(), heading: heading.as_ref(), output };
+        uncertainty(scenario, measure, &against, &found)
     })?;
     summary.schema = summary.needed_schema()?;
     let report = ReportData {

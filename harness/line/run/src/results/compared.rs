@@ -7,9 +7,10 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use octant_scenario::{Scenario, SourceSpec};
 use octant_score::heading_output::{HeadingOutputScore, HeadingPair};
+use octant_score::summary::HeadingScore;
 use octant_trajectory::Comparison;
 use octant_trajectory::comparison::{ComparedHeading, ErrorName, Quantity};
-use octant_verdict::decision::TimeDoubt;
+use octant_verdict::decision::{TimeDoubt, UnknownUncertainty};
 
 /// Standard deviations in an expanded uncertainty (95 %).
 const EXPANDED: f64 = 1.96;
@@ -76,6 +77,44 @@ pub(super) fn band(comparison: &Comparison, measure: &str, scenario: &Scenario) 
     let score = if score.contains("_max_") { "max" } else { score };
     let over_time = over_time(score, scenario);
     comparison.band(error).of(score).map(|band| band * units * over_time)
+}
+
+/// Expanded uncertainty (95 %) of a measure of a heading test of a solution, in its unit, without that of its last digit;
+/// `None`: it is another measure.
+///
+/// An error against a true heading has the uncertainty of that heading, which has to be stated. A difference of two readings
+/// hasn't: the base is the same. In motion the true heading moves while the time of a reading is in doubt.
+pub(super) fn of_heading_test(
+    comparison: &Comparison,
+    heading: &HeadingScore,
+    measure: &str,
+    scenario: &Scenario,
+) -> Option<Result<f64, UnknownUncertainty>> {
+    let bare = measure.trim_matches('|');
+    bare.strip_prefix("heading.")?;
+    let stated = scenario.decision.uncertainties.iter().find(|stated| stated.measure == bare);
+    let stated = stated.map(|stated| stated.uncertainty);
+    let of_reference = comparison.band(ErrorName::Heading).of("largest").map(f64::to_degrees);
+    let is_in_motion = bare.contains("in_motion.") || bare.contains("dynamic_");
+    let late_deg = if is_in_motion { comparison.late_rad().to_degrees() } else { 0.0 };
+    let known = match bare.rsplit('.').next() {
+        Some("settle_point_error_deg") => match (stated, of_reference) {
+            (None, None) if heading.knows_truth() => return Some(Err(UnknownUncertainty)),
+            (stated, of_reference) => stated.unwrap_or(0.0).max(of_reference.unwrap_or(0.0)),
+        },
+        // A reference that moves has its error at each of the two times.
+        Some("scorsby_error_deg" | "dynamic_amplitude_deg" | "repeatability_deg") => {
+            let of_file = of_reference.filter(|_| is_file(scenario)).unwrap_or(0.0);
+            stated.unwrap_or(0.0).max(of_file)
+        }
+        _ => stated.unwrap_or(0.0),
+    };
+    Some(Ok(libm::hypot(known, late_deg)))
+}
+
+/// True if the reference of a solution is a file.
+fn is_file(scenario: &Scenario) -> bool {
+    matches!(&scenario.source, SourceSpec::Solution(spec) if spec.reference.file().is_some())
 }
 
 /// Factor of the uncertainty of a score that is a change with time.

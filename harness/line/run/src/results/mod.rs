@@ -10,3 +10,4 @@ pub(crate) mod method;
 pub mod raw_counts;
 pub mod refusal;
 mod scores_text;
+mod uncertainty;

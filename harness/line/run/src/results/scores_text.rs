@@ -66,6 +66,12 @@ pub(super) fn heading_lines(heading: &HeadingScore) -> Vec<String> {
     {
         lines.push(format!("    repeatability {repeated:.4} deg"));
     }
+    if !heading.knows_truth() {
+        lines.push(
+            "    not tested: errors, for no true heading is known; settling, scatter and repeatability are of the headings alone"
+                .to_owned(),
+        );
+    }
     lines
 }
 

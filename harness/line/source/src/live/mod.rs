@@ -22,6 +22,7 @@ use self::clock::{Clock, Reference};
 use self::feed::Feed;
 use self::known_stamps::KnownClock;
 use self::pulses::Pulses;
+pub use self::table::Table as BenchTable;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
 use crate::described::port_decoder;

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Table under the instrument.
 #[derive(Debug)]
-pub(super) struct Table {
+pub struct Table {
     turns: Turns,
     drive: Drive,
     /// Name of the table's dialect.
@@ -110,7 +110,10 @@ pub(super) struct TableSummary {
 
 impl Table {
     /// Takes over the table and moves it to the start position of a run; or waits for the run that does so.
-    pub(super) fn start(drive: &Drive, folder: &Path) -> Result<Self, SourceError> {
+    ///
+    /// # Errors
+    /// If it doesn't obey.
+    pub fn start(drive: &Drive, folder: &Path) -> Result<Self, SourceError> {
         let made =
             |turns, language| Self { turns, drive: drive.clone(), language, ages: Ages::default() };
         if drive.driver == TableDriver::AnotherRun {
@@ -134,7 +137,10 @@ impl Table {
     }
 
     /// Fails if the table was stopped.
-    pub(super) fn check(&self) -> Result<(), SourceError> {
+    ///
+    /// # Errors
+    /// If it was.
+    pub fn check(&self) -> Result<(), SourceError> {
         if !self.turns.is_stopped() {
             return Ok(());
         }
@@ -142,8 +148,11 @@ impl Table {
             .stopped(self.turns.stopped().unwrap_or_else(|| "the table was stopped".to_owned())))
     }
 
-    /// Commands the table to the core's gimbal target.
-    pub(super) fn command(&mut self, command: &GimbalCommand) -> Result<(), SourceError> {
+    /// Commands the table to a gimbal target.
+    ///
+    /// # Errors
+    /// If the table was stopped.
+    pub fn command(&mut self, command: &GimbalCommand) -> Result<(), SourceError> {
         self.check()?;
         match &mut self.turns {
             Turns::Driven(following) => following.command(command),
@@ -153,7 +162,7 @@ impl Table {
     }
 
     /// Returns the gimbal angles at a time, if a reading of the table is near enough.
-    pub(super) fn angles(&mut self, when: Instant) -> Option<GimbalAngles> {
+    pub fn angles(&mut self, when: Instant) -> Option<GimbalAngles> {
         self.turns.take_looks();
         let place = |axis| {
             let place = self.turns.at(axis, when)?;
@@ -258,7 +267,10 @@ impl Table {
     }
 
     /// Ends the run: the table is braked, immediately where the run was aborted.
-    pub(super) fn end(self, broken: Option<&str>) -> Result<(), SourceError> {
+    ///
+    /// # Errors
+    /// If the table was stopped before, or doesn't brake.
+    pub fn end(self, broken: Option<&str>) -> Result<(), SourceError> {
         let port = self.drive.port;
         let following = match self.turns {
             Turns::Driven(following) => following,

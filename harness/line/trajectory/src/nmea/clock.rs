@@ -4,6 +4,7 @@ use super::date::DAY_NS;
 use super::framed::Tag;
 use super::heading::HeadingSaid;
 use crate::point::{PointSigma, TrajectoryPoint};
+use octant_scenario::trajectory::HeadingDelay;
 use std::collections::VecDeque;
 
 /// Cycles that are longer than this many of the one before have a gap.
@@ -11,6 +12,51 @@ const GAP_CYCLES: f64 = 1.5;
 
 /// A point, with the quality of its heading.
 pub(super) type Ready = (TrajectoryPoint, &'static str);
+
+/// Quality of an answer without a heading.
+const WITHOUT: &str = "no heading: the instrument calls it invalid";
+
+/// A sentence of the instrument, in its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Answer {
+    /// A heading.
+    Heading(HeadingSaid),
+    /// None yet, where that is told from silence.
+    Without,
+    /// One that makes no point, and was counted as left out.
+    LeftOut,
+}
+
+impl Answer {
+    /// True if it makes a point.
+    pub(super) fn is_point(&self) -> bool {
+        !matches!(self, Self::LeftOut)
+    }
+
+    /// The point at a time, which is off by as much as `doubt_s`; `None`: it makes none.
+    pub(super) fn point(
+        &self,
+        time_ns: i64,
+        doubt_s: f64,
+        sigma_rad: Option<[f64; 3]>,
+    ) -> Option<Ready> {
+        let (attitude, digit_rad, quality) = match self {
+            Self::Heading(said) => (Some(said.attitude()), said.digit_rad, said.quality),
+            Self::Without => (None, [0.0; 3], WITHOUT),
+            Self::LeftOut => return None,
+        };
+        let point = TrajectoryPoint {
+            time_ns,
+            position: None,
+            velocity_mps: None,
+            attitude,
+            sigma: PointSigma { attitude_rad: sigma_rad, ..PointSigma::default() },
+            digit_rad,
+            attitude_doubt_s: doubt_s,
+        };
+        Some((point, quality))
+    }
+}
 
 /// The group of sentences that a TAG block told last.
 #[derive(Clone, Debug, Default)]
@@ -64,22 +110,22 @@ pub(super) struct Cycle {
     /// Length of the cycle before, and the time between two of its headings.
     length_ns: Option<i64>,
     spacing_ns: Option<f64>,
-    /// Headings in their places; `None`: one that makes no point.
-    pub(super) waiting: Vec<Option<HeadingSaid>>,
+    /// Sentences in their places.
+    pub(super) waiting: Vec<Answer>,
+    /// Place of the first one behind the time of day, where it is known.
+    delay: Option<HeadingDelay>,
 }
 
 impl Cycle {
-    pub(super) fn of(days: Days) -> Self {
-        Self { days, ..Self::default() }
+    pub(super) fn of(days: Days, delay: Option<HeadingDelay>) -> Self {
+        Self { days, delay, ..Self::default() }
     }
 
     /// Takes the next time of day; returns the number of headings that are left out.
     pub(super) fn mark(&mut self, time_ns: i64, ready: &mut VecDeque<Ready>) -> u64 {
         let Some(mark_ns) = self.mark_ns else {
             self.mark_ns = Some(time_ns);
-            let left = self.waiting.iter().flatten().count() as u64;
-            self.waiting.clear();
-            return left;
+            return self.leave_out();
         };
         let length_ns = time_ns - mark_ns;
         if length_ns <= 0 {
@@ -101,11 +147,20 @@ impl Cycle {
     }
 
     fn spread(&mut self, mark_ns: i64, spacing_ns: f64, ready: &mut VecDeque<Ready>) {
-        for (place, said) in self.waiting.drain(..).enumerate() {
-            let Some(said) = said else { continue };
-            let time_ns = mark_ns + (place as f64 * spacing_ns).round() as i64;
-            ready.push_back(point(time_ns, &said, spacing_ns * 1e-9, None));
+        let delay = self.delay;
+        let delay_ns = delay.map_or(0.0, |delay| delay.delay_s * 1e9);
+        let doubt_s = delay.map_or(spacing_ns * 1e-9, |delay| delay.uncertainty_s);
+        for (place, answer) in self.waiting.drain(..).enumerate() {
+            let time_ns = mark_ns + (delay_ns + place as f64 * spacing_ns).round() as i64;
+            ready.extend(answer.point(time_ns, doubt_s, None));
         }
+    }
+
+    /// Leaves out what waits; returns its number.
+    fn leave_out(&mut self) -> u64 {
+        let left = self.waiting.iter().filter(|answer| answer.is_point()).count() as u64;
+        self.waiting.clear();
+        left
     }
 
     /// Ends with the file; returns the number of headings that are left out.
@@ -113,26 +168,6 @@ impl Cycle {
         if let (Some(mark_ns), Some(spacing_ns)) = (self.mark_ns, self.spacing_ns) {
             self.spread(mark_ns, spacing_ns, ready);
         }
-        let left = self.waiting.iter().flatten().count() as u64;
-        self.waiting.clear();
-        left
+        self.leave_out()
     }
-}
-
-pub(super) fn point(
-    time_ns: i64,
-    said: &HeadingSaid,
-    doubt_s: f64,
-    attitude_rad: Option<[f64; 3]>,
-) -> Ready {
-    let point = TrajectoryPoint {
-        time_ns,
-        position: None,
-        velocity_mps: None,
-        attitude: Some(said.attitude()),
-        sigma: PointSigma { attitude_rad, ..PointSigma::default() },
-        digit_rad: said.digit_rad,
-        attitude_doubt_s: doubt_s,
-    };
-    (point, said.quality)
 }

@@ -1,6 +1,7 @@
 //! The day of the first sentence with a time of day.
 
 use super::lines::NmeaLines;
+use super::problem::NmeaProblem;
 use super::sentence::Sentence;
 use super::words::UNSUMMED;
 use crate::point::SECOND_NS;
@@ -10,16 +11,17 @@ pub(super) const DAY_NS: i64 = 86_400 * SECOND_NS;
 /// Lines within which a file has to show what it is.
 pub(super) const LINES_TO_LOOK_AT: u64 = 10_000;
 
-/// Words for sentences without checksums.
-pub(super) fn words_of_unsummed(unsummed: u64) -> String {
-    format!(
-        "found {unsummed} sentences without a checksum, expected each to end in * and two hexadecimal digits, the exclusive or of \
-         the characters between $ and *: have the receiver or the logger write them; without, a damaged sentence can't be told"
+/// The problem of sentences without checksums.
+pub(super) fn all_unsummed(unsummed: u64) -> NmeaProblem {
+    NmeaProblem::found(
+        format!("{unsummed} sentences without a checksum"),
+        "each to end in * and two hexadecimal digits, the exclusive or of the characters between $ and *: have the receiver or \
+         the logger write them; without, a damaged sentence can't be told",
     )
 }
 
 /// Finds the day of the first point.
-pub(super) fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
+pub(super) fn first_day(lines: &mut NmeaLines) -> Result<i64, NmeaProblem> {
     let mut first_ns: Option<i64> = None;
     let (mut sentences, mut unsummed) = (0_u64, 0_u64);
     while lines.advance()? && (sentences > 0 || lines.line <= LINES_TO_LOOK_AT) {
@@ -40,11 +42,10 @@ pub(super) fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
         }
     }
     Err(if sentences == 0 && unsummed > 0 {
-        words_of_unsummed(unsummed)
+        all_unsummed(unsummed)
     } else if sentences == 0 {
-        "found no sentence of NMEA 0183 with a position, a speed or an attitude, and a right checksum"
-            .to_owned()
+        NmeaProblem::Nothing
     } else {
-        format!("found {sentences} sentences and no date, expected an RMC or a ZDA")
+        NmeaProblem::found(format!("{sentences} sentences and no date"), "an RMC or a ZDA")
     })
 }

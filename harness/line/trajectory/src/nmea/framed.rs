@@ -83,6 +83,13 @@ impl<'a> Framed<'a> {
     }
 }
 
+/// Time of the TAG block before the sentence of a line, ns since 1970, UTC; `None`: it has none, or is damaged.
+#[must_use]
+pub fn tag_time_ns(line: &str) -> Option<i64> {
+    let framed = Framed::of(line).ok().filter(|framed| framed.summed)?;
+    framed.tag().ok()??.time_ns
+}
+
 /// Parameters of a TAG block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Tag<'a> {

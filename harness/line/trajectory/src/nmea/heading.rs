@@ -15,6 +15,7 @@
 use crate::point::PointAttitude;
 use std::f64::consts::{PI, TAU};
 
+use super::problem::NmeaProblem;
 use super::words::{NO_MEASUREMENT, OTHER_KINDS, Talker, UNREADABLE, last_digit};
 
 /// Reason of a heading that its instrument calls invalid.
@@ -69,7 +70,7 @@ impl HeadingSaid {
     ///
     /// # Errors
     /// If two instruments differ by more than their last digits.
-    pub(super) fn keep(kept: &mut Option<Self>, said: Option<Self>) -> Result<(), String> {
+    pub(super) fn keep(kept: &mut Option<Self>, said: Option<Self>) -> Result<(), NmeaProblem> {
         let Some(said) = said else { return Ok(()) };
         let Some(first) = kept else {
             *kept = Some(said);
@@ -83,14 +84,18 @@ impl HeadingSaid {
         if apart_rad.abs() <= first.digit_rad[2] + said.digit_rad[2] {
             return Ok(());
         }
-        Err(format!(
-            "{} and {} disagree: their headings behind one position are {:.3} deg apart, expected one instrument: say which one \
-             with the key talker, such as talker = \"{}\", or have headings alone, points = \"headings\"",
-            first.talker,
-            said.talker,
-            apart_rad.abs().to_degrees(),
-            first.talker,
-        ))
+        let [one, other] = [first.talker, said.talker];
+        let apart_deg = apart_rad.abs().to_degrees();
+        Err(NmeaProblem::Contradiction {
+            line: None,
+            what: format!(
+                "{one} and {other} disagree: their headings behind one position are {apart_deg:.3} deg apart"
+            ),
+            expected: format!(
+                "one instrument: say which one with the key talker, such as talker = \"{one}\", or have headings alone, \
+                 points = \"headings\""
+            ),
+        })
     }
 }
 

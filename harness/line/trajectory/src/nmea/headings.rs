@@ -8,11 +8,12 @@
 //! Headings that are invalid make no point, and keep their places.
 
 use super::choice::OTHER_TALKERS;
-use super::clock::{Cycle, Days, Group, Ready, point};
-use super::date::{LINES_TO_LOOK_AT, first_day, words_of_unsummed};
+use super::clock::{Answer, Cycle, Days, Group, Ready};
+use super::date::{LINES_TO_LOOK_AT, all_unsummed, first_day};
 use super::framed::{DAMAGED_TAG, Framed};
 use super::heading::{ESTIMATED_HEADING, HeadingSaid, INVALID, PsxnQuality};
 use super::lines::NmeaLines;
+use super::problem::NmeaProblem;
 use super::sentence::Sentence;
 use super::words::{Talker, UNREADABLE, UNSUMMED};
 use crate::point::{Points, SECOND_NS, TimeScale, TrajectoryPoint};
@@ -36,6 +37,8 @@ pub(crate) struct HeadingReader {
     lines: NmeaLines,
     by: Source,
     fixes_alone: bool,
+    /// True if an answer without a heading makes a point, too.
+    tells_none: bool,
     clock: Clock,
     quality: PsxnQuality,
     ready: VecDeque<Ready>,
@@ -94,7 +97,7 @@ impl Found {
 }
 
 /// The instrument of a file: the one that is chosen. A maker's sentence has no talker, and counts where the talker has none.
-fn instrument(all: &[Found], chosen: Option<Talker>, unsummed: u64) -> Result<Found, String> {
+fn instrument(all: &[Found], chosen: Option<Talker>, unsummed: u64) -> Result<Found, NmeaProblem> {
     let named: Vec<Found> = match chosen {
         None => all.to_vec(),
         Some(chosen) => {
@@ -107,22 +110,26 @@ fn instrument(all: &[Found], chosen: Option<Talker>, unsummed: u64) -> Result<Fo
     };
     match named[..] {
         [one] => Ok(one),
-        [] if unsummed > 0 => Err(words_of_unsummed(unsummed)),
+        [] if unsummed > 0 => Err(all_unsummed(unsummed)),
         [] => {
             let of = chosen.map_or_else(String::new, |talker| format!(" of talker {talker}"));
-            Err(format!(
-                "found no sentence with a heading{of} and a right checksum, expected HDT, THS, PASHR, PSXN, PRDID or PFEC"
+            Err(NmeaProblem::found(
+                format!("no sentence with a heading{of} and a right checksum"),
+                "HDT, THS, PASHR, PSXN, PRDID or PFEC",
             ))
         }
-        [one, other, ..] => Err(format!(
-            "found headings of {} and of {}, expected one instrument: say which one with the key talker, such as talker = \"{}\"",
-            one.talker, other.talker, one.talker
+        [one, other, ..] => Err(NmeaProblem::found(
+            format!("headings of {} and of {}", one.talker, other.talker),
+            format!(
+                "one instrument: say which one with the key talker, such as talker = \"{}\"",
+                one.talker
+            ),
         )),
     }
 }
 
 /// Finds which sentences are the headings of a file, and what tells their times.
-fn sources(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<Source, String> {
+fn sources(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<Source, NmeaProblem> {
     let mut all: Vec<Found> = Vec::new();
     let mut clock: Option<(Talker, bool)> = None;
     let mut unsummed = 0_u64;
@@ -162,10 +169,10 @@ fn sources(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<Source, String>
         None if stamps > 0 => HeadingTime::Stamp,
         None if has_cycle => HeadingTime::Cycle,
         None => {
-            return Err(format!(
-                "found {count} headings of {talker} and nothing that tells their times, expected a ZDA in the log, TAG blocks \
-                 with c: or the stamps of a logger; of a log without, say the rate, such as heading_rate = \"10 Hz\", and the \
-                 time of the first one, heading_start = \"2027-03-31T08:00:00Z\""
+            return Err(NmeaProblem::found(
+                format!("{count} headings of {talker} and nothing that tells their times"),
+                "a ZDA in the log, TAG blocks with c: or the stamps of a logger; of a log without, say the rate, such as \
+                 heading_rate = \"10 Hz\", and the time of the first one, heading_start = \"2027-03-31T08:00:00Z\"",
             ));
         }
     };
@@ -178,7 +185,7 @@ fn sources(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<Source, String>
         _ => None,
     };
     match needs {
-        Some(needs) => Err(format!("found {count} headings of {talker}, expected {needs}")),
+        Some(needs) => Err(NmeaProblem::found(format!("{count} headings of {talker}"), needs)),
         None => Ok(Source { talker, has_mode, clock, time }),
     }
 }
@@ -193,20 +200,20 @@ fn heading_of(sentence: &Sentence) -> Option<(Talker, bool)> {
 }
 
 impl HeadingReader {
-    pub(crate) fn new(file: File, choice: &NmeaChoice) -> Result<Self, String> {
+    pub(crate) fn new(file: File, choice: &NmeaChoice) -> Result<Self, NmeaProblem> {
         let mut lines = NmeaLines::new(file);
         let by = sources(&mut lines, choice)?;
         let mut lines = lines.again()?;
         let is_own = by.talker == Talker::of("PASHR");
         let mut day = || {
             let day_ns = first_day(&mut lines)?;
-            Ok::<_, String>(Days::from(day_ns))
+            Ok::<_, NmeaProblem>(Days::from(day_ns))
         };
         let clock = match by.time {
             HeadingTime::Tag => Clock::Tag(Group::default()),
             HeadingTime::Stamp => Clock::Stamp,
             HeadingTime::Cycle if is_own => Clock::Own(day()?),
-            HeadingTime::Cycle => Clock::Cycle(Box::new(Cycle::of(day()?))),
+            HeadingTime::Cycle => Clock::Cycle(Box::new(Cycle::of(day()?, choice.heading_delay))),
             HeadingTime::Rate(rate_hz, start_ns) => Clock::Rate {
                 period_ns: SECOND_NS as f64 / rate_hz,
                 start_ns: start_ns.unwrap_or(0),
@@ -218,6 +225,7 @@ impl HeadingReader {
             lines,
             by,
             fixes_alone: choice.fixes_alone,
+            tells_none: choice.tells_none,
             clock,
             quality: PsxnQuality::default(),
             ready: VecDeque::new(),
@@ -232,14 +240,14 @@ impl HeadingReader {
     }
 
     /// Takes the present line.
-    fn take(&mut self) -> Result<(), String> {
+    fn take(&mut self) -> Result<(), NmeaProblem> {
         let text = std::mem::take(&mut self.lines.text);
         let taken = self.take_text(&text);
         self.lines.text = text;
         taken
     }
 
-    fn take_text(&mut self, text: &str) -> Result<(), String> {
+    fn take_text(&mut self, text: &str) -> Result<(), NmeaProblem> {
         let sentence = match Sentence::of(text) {
             Ok(sentence) => sentence,
             Err(_) if text.trim().is_empty() => return Ok(()),
@@ -253,7 +261,7 @@ impl HeadingReader {
             self.tally.used(1);
             return Ok(());
         }
-        let place = match heading_of(&sentence) {
+        let answer = match heading_of(&sentence) {
             Some((talker, _)) if talker != self.by.talker => {
                 self.leave_out(OTHER_TALKERS);
                 return Ok(());
@@ -263,20 +271,25 @@ impl HeadingReader {
                 return Ok(());
             }
             Some(_) => match self.judged(&sentence) {
-                Ok(said) => Some(said),
-                Err(reason) => {
-                    self.leave_out(reason);
-                    None
-                }
+                Ok(said) => Answer::Heading(said),
+                Err(reason) => self.without(reason),
             },
             // A THS without a heading keeps its place.
             None if sentence.heading_talker == Some(self.by.talker) => {
-                self.leave_out(sentence.left_out.unwrap_or(INVALID));
-                None
+                self.without(sentence.left_out.unwrap_or(INVALID))
             }
             None => return self.take_other(&sentence),
         };
-        self.take_heading(text, &sentence, place)
+        self.take_heading(text, &sentence, answer)
+    }
+
+    /// A sentence of the instrument without a heading that counts.
+    fn without(&mut self, reason: &'static str) -> Answer {
+        if self.tells_none && reason == INVALID {
+            return Answer::Without;
+        }
+        self.leave_out(reason);
+        Answer::LeftOut
     }
 
     /// The heading of a sentence, with its quality.
@@ -301,7 +314,7 @@ impl HeadingReader {
     }
 
     /// Takes a sentence without a heading of the instrument.
-    fn take_other(&mut self, sentence: &Sentence) -> Result<(), String> {
+    fn take_other(&mut self, sentence: &Sentence) -> Result<(), NmeaProblem> {
         let is_clock = sentence.of_day_ns.is_some()
             && self.by.clock == Some((sentence.talker, sentence.is_date_alone));
         match (&mut self.clock, sentence.of_day_ns) {
@@ -327,8 +340,8 @@ impl HeadingReader {
         &mut self,
         text: &str,
         sentence: &Sentence,
-        said: Option<HeadingSaid>,
-    ) -> Result<(), String> {
+        answer: Answer,
+    ) -> Result<(), NmeaProblem> {
         let line = self.lines.line;
         let time_ns = match &mut self.clock {
             Clock::Tag(group) => match Framed::of(text).and_then(|framed| framed.tag()) {
@@ -350,23 +363,24 @@ impl HeadingReader {
             },
             Clock::Cycle(cycle) => {
                 if cycle.waiting.len() == CYCLE_MAX {
-                    return Err(format!(
-                        "line {line}: found {CYCLE_MAX} headings behind one time of day, expected the times of a clock that runs"
-                    ));
+                    let problem = NmeaProblem::found(
+                        format!("{CYCLE_MAX} headings behind one time of day"),
+                        "the times of a clock that runs",
+                    );
+                    return Err(problem.at(line));
                 }
-                cycle.waiting.push(said);
+                cycle.waiting.push(answer);
                 return Ok(());
             }
         };
-        match (time_ns, said) {
-            (Ok(time_ns), said) => {
+        match time_ns {
+            Ok(time_ns) => {
                 self.heard_ns = self.heard_ns.max(Some(time_ns));
-                let sigma_rad = sentence.attitude_sigma_rad;
-                self.ready.extend(said.map(|said| point(time_ns, &said, 0.0, sigma_rad)));
+                self.ready.extend(answer.point(time_ns, 0.0, sentence.attitude_sigma_rad));
             }
             // Left out already, for a reason of its own.
-            (Err(_), None) => {}
-            (Err(reason), Some(_)) => self.leave_out(reason),
+            Err(_) if !answer.is_point() => {}
+            Err(reason) => self.leave_out(reason),
         }
         Ok(())
     }
@@ -380,8 +394,11 @@ impl Points for HeadingReader {
                 self.tally.quality(quality);
                 return Ok(Some(point));
             }
-            if self.lines.advance()? {
-                self.take()?;
+            let taken = match self.lines.advance() {
+                Ok(true) => self.take().map(|()| true),
+                read => read,
+            };
+            if taken.map_err(|problem| problem.to_string())? {
                 continue;
             }
             if let Clock::Cycle(cycle) = &mut self.clock {

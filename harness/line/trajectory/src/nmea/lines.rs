@@ -1,5 +1,6 @@
 //! Lines of a file with sentences and other bytes.
 
+use super::problem::NmeaProblem;
 use crate::point::LINE_BYTES_MAX;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
@@ -19,9 +20,9 @@ impl NmeaLines {
     }
 
     /// Begins the file again.
-    pub(super) fn again(self) -> Result<Self, String> {
+    pub(super) fn again(self) -> Result<Self, NmeaProblem> {
         let mut file = self.file.into_inner();
-        file.rewind().map_err(|error| error.to_string())?;
+        file.rewind().map_err(|error| NmeaProblem::File { line: None, error })?;
         Ok(Self::new(file))
     }
 
@@ -30,11 +31,12 @@ impl NmeaLines {
     }
 
     /// Reads the next line; `false` at the end. Loggers mix in bytes that aren't text.
-    pub(super) fn advance(&mut self) -> Result<bool, String> {
+    pub(super) fn advance(&mut self) -> Result<bool, NmeaProblem> {
         self.bytes.clear();
         self.line += 1;
         let read = (&mut self.file).take(LINE_BYTES_MAX).read_until(b'\n', &mut self.bytes);
-        let read = read.map_err(|error| format!("line {}: {error}", self.line))?;
+        let line = Some(self.line);
+        let read = read.map_err(|error| NmeaProblem::File { line, error })?;
         self.text.clear();
         self.text.push_str(&String::from_utf8_lossy(&self.bytes));
         Ok(read > 0)

@@ -2,6 +2,7 @@
 
 use super::framed::Framed;
 use super::heading::{HeadingSaid, Heard, unscored};
+use super::problem::NmeaProblem;
 use super::words::{NO_FIX, NO_MEASUREMENT, OTHER_KINDS, Talker, UNREADABLE, UNSUMMED, last_digit};
 use crate::point::SECOND_NS;
 use octant_base::decimal::decimal_ns;
@@ -46,7 +47,7 @@ impl<const N: usize> Said<N> {
         said: Option<Self>,
         quantity: &str,
         amount: impl Fn(&Self, &Self) -> String,
-    ) -> Result<(), String> {
+    ) -> Result<(), NmeaProblem> {
         let Some(said) = said else { return Ok(()) };
         let Some(first) = kept else {
             *kept = Some(said);
@@ -60,21 +61,28 @@ impl<const N: usize> Said<N> {
                 }
                 Ok(())
             }
-            Some(_) if first.talker == said.talker => Err(format!(
-                "two {}{} of the same time disagree: their {quantity} are {} apart, expected one instrument, and times \
-                 with the digits of its rate",
-                said.talker,
-                said.kind,
-                amount(first, &said)
-            )),
-            Some(_) => Err(format!(
-                "talkers {} and {} disagree: their {quantity} at the same time are {} apart, expected one instrument: \
-                 say which one with the key talker, such as talker = \"{}\"",
-                first.talker,
-                said.talker,
-                amount(first, &said),
-                said.talker,
-            )),
+            Some(_) => {
+                let (one, other, amount) = (first.talker, said.talker, amount(first, &said));
+                let (what, expected) = if one == other {
+                    let kind = said.kind;
+                    (
+                        format!(
+                            "two {other}{kind} of the same time disagree: their {quantity} are {amount} apart"
+                        ),
+                        "one instrument, and times with the digits of its rate".to_owned(),
+                    )
+                } else {
+                    (
+                        format!(
+                            "talkers {one} and {other} disagree: their {quantity} at the same time are {amount} apart"
+                        ),
+                        format!(
+                            "one instrument: say which one with the key talker, such as talker = \"{other}\""
+                        ),
+                    )
+                };
+                Err(NmeaProblem::Contradiction { line: None, what, expected })
+            }
         }
     }
 }

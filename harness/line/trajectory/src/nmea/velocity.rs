@@ -3,6 +3,7 @@
 use super::choice::chosen;
 use super::date::LINES_TO_LOOK_AT;
 use super::lines::NmeaLines;
+use super::problem::NmeaProblem;
 use super::sentence::Sentence;
 use crate::point::SECOND_NS;
 use octant_earth::ellipsoid::Ellipsoid;
@@ -13,7 +14,10 @@ const VELOCITIES_LEAST: u32 = 5;
 
 /// Learns whether the velocities without a time belong to the positions after them: those of the positions before and after
 /// each tell.
-pub(super) fn velocity_leads(lines: &mut NmeaLines, choice: &NmeaChoice) -> Result<bool, String> {
+pub(super) fn velocity_leads(
+    lines: &mut NmeaLines,
+    choice: &NmeaChoice,
+) -> Result<bool, NmeaProblem> {
     let mut points: Vec<(i64, [f64; 2])> = Vec::new();
     // Velocities with the number of points before them.
     let mut velocities: Vec<(usize, [f64; 2])> = Vec::new();

@@ -68,7 +68,10 @@ keys! {
             "How often the unit is switched on: each run-up aligns, calibrates and navigates, and is measured.";
         off: f64 = time(0.0, 366.0 * 86400.0, "from 0 s to 366 day"), "12 h",
             "How long the unit is without power between two run-ups.";
-        resolution: f64
+        azimuths: At<Option<Vec<String>>> = Of::<Vec<String>>::kind(Kind::Names),
+            absent("the unit stands at zero"),
+            "Angle by which the table has turned the unit in each run-up of a solution: the true heading is turned as far, such as [\"0 deg\", \"90 deg\"]. turntable.drive turns it there before the unit is switched on.";
+        resolution: At<f64>
             = within(&[UnitDimension::ANGLE], 0.0, DEG, "from 0 to 1 deg"), "0 deg",
             "Resolution of the headings that are read: they are rounded to it, and it counts as uncertainty. 0: exact.";
     }

@@ -20,7 +20,10 @@ keys! {
             ("plant", "simulated"),
             ("replay", "a recording of this program or another MCAP file: replay:FILE"),
             ("text", "columns of numbers: text:FILE"),
-            ("solution", "no samples: an instrument's own solution, which is scored: solution:FILE"),
+            (
+                "solution",
+                "no samples: an instrument's own solution, which is scored: solution:FILE, or solution:serial:PORT, solution:udp:… and solution:tcp:… of one that sends it now",
+            ),
             ("log", "the bytes that an instrument sent, as a file: log:FILE"),
             (
                 "fmu",
@@ -58,7 +61,7 @@ keys! {
             = table::<SolutionKeys>(), derived("solution: the defaults of its keys"),
             "How the solution of source.uri is read.";
         trajectory: At<Option<ReferenceTrajectoryKeys>>
-            = table::<ReferenceTrajectoryKeys>(), absent("needed by solution:FILE"),
+            = table::<ReferenceTrajectoryKeys>(), absent("needed by solution:FILE, besides a heading test that has none"),
             "The reference trajectory that a solution is scored against.";
         dither: At<Option<f64>> = number(Bounds::Within(0.05, 1.0, "between 0.05 and 1")), absent("nothing is added"),
             "Noise that the harness adds to the samples of an instrument whose own noise isn't known, from the seed, in parts of imu.angle_random_walk and imu.velocity_random_walk: shows whether the unit follows its samples. Their noise grows by the root of 1 + dither².";

@@ -2,7 +2,7 @@
 
 use super::columns::{column, time_unit};
 use super::definition::Kind;
-use super::table::{At, Of, choice, integer, keys, text, time, within};
+use super::table::{At, Of, boolean, choice, integer, keys, text, time, within};
 use crate::quantity::UnitDimension;
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
 use crate::trajectory::{HeadingTime, NmeaPoints};
@@ -64,6 +64,11 @@ macro_rules! trajectory {
                     "NMEA: even rate of headings in a file without any time. Sentences that are missing can't be seen.";
                 heading_start: At<Option<String>> = text(), absent("0 s on a scale of its own"),
                     "NMEA: time of the first heading of heading_rate, such as 2027-03-31T08:00:00Z.";
+                heading_delay: At<Option<f64>> = time(-10.0, 10.0, "from -10 to 10 s"),
+                    absent("not known: the time to the next one is in doubt"),
+                    "NMEA: time from a time of day to the measurement of the first heading behind it that has no time; negative: it was measured before.";
+                heading_delay_uncertainty: At<f64> = time(0.0, 10.0, "from 0 to 10 s"), "0 s",
+                    "NMEA: how far heading_delay may be off, 95 %.";
                 delimiter: Delimiter = choice! {
                         "whitespace" => Delimiter::Blanks, "any run of blanks and tabs";
                         "comma" => Delimiter::Character(b','), ",";
@@ -83,6 +88,17 @@ macro_rules! trajectory {
                 heading: At<Option<RecordedColumn>> = column(), derived(THERE), "Heading from north by east.";
                 pitch: At<Option<RecordedColumn>> = column(), derived(THERE), "Pitch, positive with the bow up.";
                 roll: At<Option<RecordedColumn>> = column(), derived(THERE), "Roll, positive with the starboard side down.";
+                sigma_north: At<Option<RecordedColumn>> = column(), absent("not stated"), "Standard deviation of the position to the north, m.";
+                sigma_east: At<Option<RecordedColumn>> = column(), absent("not stated"), "Standard deviation of the position to the east, m.";
+                sigma_velocity_north: At<Option<RecordedColumn>> = column(), absent("not stated"), "Standard deviation of the velocity to the north, in velocity_unit.";
+                sigma_velocity_east: At<Option<RecordedColumn>> = column(), absent("not stated"), "Standard deviation of the velocity to the east, in velocity_unit.";
+                sigma_roll: At<Option<RecordedColumn>> = column(), absent("not stated"), "Standard deviation of the roll, in angle_unit.";
+                sigma_pitch: At<Option<RecordedColumn>> = column(), absent("not stated"), "Standard deviation of the pitch, in angle_unit.";
+                sigma_heading: At<Option<RecordedColumn>> = column(), absent("not stated"), "Standard deviation of the heading, in angle_unit.";
+                quality: At<Option<RecordedColumn>> = column(), absent("not stated"),
+                    "Quality of a row, in words or numbers of its own, which the account counts.";
+                quality_left_out: At<Vec<String>> = Of::<Vec<String>>::kind(Kind::Names), "[]",
+                    "Qualities whose rows are left out, such as [\"0\", \"no fix\"].";
                 angle_unit: At<String> = Of::<String>::kind(Kind::Choice(&[("deg", ""), ("rad", "")])), "deg",
                     "Unit of the columns of angles: position and attitude.";
                 velocity_unit: At<String> = Of::<String>::kind(Kind::Choice(&[("m/s", ""), ("kn", ""), ("mm/s", "")])), "m/s",
@@ -97,13 +113,20 @@ trajectory! {
     SolutionKeys {
         skip: f64 = time(0.0, 1e6, "from 0 to 1e6 s"), "0 s",
             "Time at its beginning that isn't scored, such as an alignment.";
+        switched_on: At<Option<Vec<String>>> = Of::<Vec<String>>::kind(Kind::Names),
+            absent("one run-up, from the first point on; a run with a port notes them itself"),
+            "Heading test: times at which the unit was switched on, one for each run-up, such as [\"2027-03-31T08:00:00Z\"].";
+        silence: f64 = time(0.0, 86400.0, "from 0 s to 1 day"), "10 s",
+            "Of a port: time without a byte after which the run ends, and is inconclusive. 0 s: as long as it takes.";
+        rehearsal: bool = boolean(), "false",
+            "The time of a run with a port is that of the TAG blocks that a simulated unit sends. Always inconclusive.";
     }
 }
 
 trajectory! {
     /// `[source.trajectory]`.
     ReferenceTrajectoryKeys {
-        file: At<Option<String>> = text(), absent("true_heading is the reference"), "Its file. Relative to the scenario.";
+        file: At<Option<String>> = text(), absent("true_heading is the reference, or a heading test has none"), "Its file. Relative to the scenario.";
         true_heading: Option<f64> = within(&[UnitDimension::ANGLE], -TAU, TAU, "within ±360 deg"),
             absent("the reference is a file"),
             "Heading that was surveyed, as by a theodolite, of an instrument that stands still: it is the reference, instead of a file.";

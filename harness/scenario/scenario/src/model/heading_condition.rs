@@ -2,6 +2,8 @@
 
 use super::motion::{DocksideSpec, MOTIONS, MotionSpec};
 use super::scenario::Scenario;
+use super::source::SourceSpec;
+use crate::trajectory::SolutionReference;
 use octant_base::number;
 
 /// Condition of a heading test: place, mean heading and motion of the table.
@@ -9,8 +11,8 @@ use octant_base::number;
 pub struct HeadingCondition {
     /// Latitude of the site, deg.
     pub latitude_deg: f64,
-    /// Mean heading of the case, deg.
-    pub heading_deg: f64,
+    /// Mean heading of the case in words: `heading 40°`; of a solution that of its reference.
+    pub heading: String,
     /// Motion: `at rest`, or its angles and periods with their time.
     pub motion: String,
 }
@@ -21,7 +23,7 @@ impl HeadingCondition {
     pub fn of(scenario: &Scenario) -> Self {
         Self {
             latitude_deg: scenario.site.latitude_rad.to_degrees(),
-            heading_deg: scenario.motion.heading_rad().to_degrees(),
+            heading: heading_words(scenario),
             motion: match &scenario.motion {
                 MotionSpec::Static(_) => "at rest".to_owned(),
                 MotionSpec::Dockside(ship) => motion_words(ship),
@@ -33,12 +35,29 @@ impl HeadingCondition {
     #[must_use]
     pub fn words(&self) -> String {
         let degrees = |angle: f64| number::plain(angle, 6);
-        format!(
-            "latitude {}°, heading {}°, {}",
-            degrees(self.latitude_deg),
-            degrees(self.heading_deg),
-            self.motion
-        )
+        format!("latitude {}°, {}, {}", degrees(self.latitude_deg), self.heading, self.motion)
+    }
+}
+
+/// Text `heading 40°`, `heading 0°, 90°, 180°, 270°` of run-ups on a table, or where it comes from.
+fn heading_words(scenario: &Scenario) -> String {
+    let degrees = |rad: f64| format!("{}°", number::plain(rad.to_degrees().rem_euclid(360.0), 6));
+    let SourceSpec::Solution(spec) = &scenario.source else {
+        return format!(
+            "heading {}°",
+            number::plain(scenario.motion.heading_rad().to_degrees(), 6)
+        );
+    };
+    match &spec.reference {
+        SolutionReference::File(_) => "heading of the reference".to_owned(),
+        SolutionReference::Unknown => "no true heading".to_owned(),
+        SolutionReference::Heading { heading_rad, .. } => {
+            let azimuths = &spec.run_ups.azimuths_rad;
+            let turned = azimuths.iter().map(|azimuth_rad| degrees(heading_rad + azimuth_rad));
+            let all: Vec<String> =
+                if azimuths.is_empty() { vec![degrees(*heading_rad)] } else { turned.collect() };
+            format!("heading {}", all.join(", "))
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use super::procedure::{AlignmentSpec, CalibrationSpec, Method};
 use super::source::SourceSpec;
 use crate::error::Place;
 use crate::reference::ReferenceSpec;
+use crate::trajectory::SolutionLine;
 use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
 use octant_calibration::config as core;
@@ -305,8 +306,28 @@ impl Scenario {
     /// the source ends.
     #[must_use]
     pub fn samples(&self) -> Option<u64> {
+        if let (SourceSpec::Solution(_), Some(test)) = (&self.source, &self.heading_test) {
+            // The time of a solution's run is that with power.
+            return Some(self.run_up_samples()? * u64::from(test.run_ups));
+        }
         let last = self.power_cycles().last().map_or(0, |cycle| cycle.on_before - 1);
         Some(last + self.run_up_samples()?)
+    }
+
+    /// The port of a solution that comes while the run goes.
+    #[must_use]
+    pub fn solution_line(&self) -> Option<&SolutionLine> {
+        match &self.source {
+            SourceSpec::Solution(spec) => spec.line.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Time for which a solution is taken from its port, s, with the pauses of a heading test; `None` without an end.
+    #[must_use]
+    pub fn line_s(&self) -> Option<f64> {
+        let duration_s = self.navigation.as_ref()?.duration_s?;
+        Some(self.heading_test.as_ref().map_or(duration_s, |test| test.lasts_s(duration_s)))
     }
 
     /// Number of samples from switching on to the end of the navigation; `None` if it lasts until the source ends.
@@ -332,6 +353,9 @@ impl Scenario {
         let (Some(test), Some(on)) = (&self.heading_test, self.run_up_samples()) else {
             return Vec::new();
         };
+        if matches!(self.source, SourceSpec::Solution(_)) {
+            return Vec::new();
+        }
         let off = self.samples_in(test.off_s);
         let cycle = |number: u64| PowerCycle {
             off_before: number * on + (number - 1) * off + 1,

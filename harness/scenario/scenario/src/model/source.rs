@@ -110,6 +110,7 @@ impl SourceSpec {
                 mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
             }
             Self::Solution(spec) => std::iter::once(&spec.solution)
+                .filter(|_| spec.line.is_none())
                 .chain(spec.reference.file())
                 .map(|trajectory| trajectory.file.clone())
                 .collect(),
@@ -154,6 +155,7 @@ impl SourceSpec {
             }
             Self::Solution(spec) => {
                 let against = match &spec.reference {
+                    SolutionReference::Unknown => "no reference".to_owned(),
                     SolutionReference::File(reference) => reference.file.short().to_owned(),
                     SolutionReference::Heading { heading_rad, .. } => format!(
                         "a true heading of {} deg",

@@ -2,7 +2,7 @@
 
 use crate::error::Problem;
 use crate::keys::{At, DriveKeys};
-use crate::model::{Drive, FileName, Scenario};
+use crate::model::{Drive, FileName, Scenario, SourceSpec};
 use octant_plant::config::TurntableConfig;
 use octant_turntable::{AxisLimits, DriverSettings, TableAxis, TableLimits};
 use std::time::Duration;
@@ -74,6 +74,19 @@ fn range(keys: &DriveKeys, axis: TableAxis) -> &At<[f64; 2]> {
 /// Checks that the procedure stays within the limits of the table.
 pub(super) fn check_reach(keys: &DriveKeys, scenario: &Scenario) -> Result<(), Problem> {
     let Some(drive) = &scenario.drive else { return Ok(()) };
+    if let SourceSpec::Solution(spec) = &scenario.source {
+        // It is turned to the angles of its run-ups alone.
+        let beyond = |angle_rad: &&f64| {
+            drive.settings.limits.angle(TableAxis::Azimuth, **angle_rad).is_err()
+        };
+        let Some(angle_rad) = spec.run_ups.azimuths_rad.iter().find(beyond) else { return Ok(()) };
+        let range = range(keys, TableAxis::Azimuth);
+        return Err(range.problem(format!(
+            "found {}, but procedure.heading_test.azimuths has {:.4} deg",
+            range.text,
+            angle_rad.to_degrees()
+        )));
+    }
     let calibration = scenario.calibration.iter().chain(&scenario.baseline);
     let sequences = (calibration.map(|calibration| ("calibration", &calibration.sequence)))
         .chain(scenario.navigation.iter().map(|navigation| ("navigation", &navigation.rotation)));

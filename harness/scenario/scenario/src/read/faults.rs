@@ -76,6 +76,10 @@ pub(super) fn steps(
 ) -> Result<Vec<OperatorStep>, Problem> {
     let runs_on = runs_on(scenario.source.instrument().is_some(), scenario.realtime.by_clock);
     let (timing, mut all) = (Timing::of(scenario), Vec::<OperatorStep>::new());
+    // Between the run-ups of a unit that sends a solution, time goes on.
+    let line_s = scenario.line_s().filter(|_| matches!(scenario.source, SourceSpec::Solution(_)));
+    let of_line = line_s.map(|s| ((s * 1e9).round() as u64) / scenario.sample_period_ns);
+    let last = of_line.or_else(|| scenario.samples());
     for table in tables.iter().flatten().map(Raw::reader) {
         let keys = OperatorKeys::of(&table)?;
         let parts = StepParts {
@@ -92,7 +96,7 @@ pub(super) fn steps(
             named: keys.who,
             holds: keys.hold,
         };
-        let step = OperatorStep::new(parts, &all, runs_on, scenario.samples());
+        let step = OperatorStep::new(parts, &all, runs_on, last);
         all.push(step.map_err(|(key, message)| table.problem(key, message))?);
     }
     Ok(all)

@@ -2,7 +2,9 @@
 
 use crate::error::Problem;
 use crate::keys::{At, HeadingTestKeys, ScenarioKeys};
-use crate::model::{EndpointSpec, HeadingTestKind, HeadingTestSpec, MotionSpec, Scenario};
+use crate::model::{
+    EndpointSpec, HeadingTestKind, HeadingTestSpec, MotionSpec, Scenario, SourceSpec,
+};
 
 /// Reads the heading test.
 pub(super) fn spec(keys: &At<Option<HeadingTestKeys>>) -> Option<HeadingTestSpec> {
@@ -10,7 +12,7 @@ pub(super) fn spec(keys: &At<Option<HeadingTestKeys>>) -> Option<HeadingTestSpec
         test: *keys.test,
         run_ups: *keys.run_ups,
         off_s: keys.off,
-        resolution_rad: keys.resolution,
+        resolution_rad: *keys.resolution,
     })
 }
 
@@ -61,6 +63,14 @@ pub(super) fn check(keys: &ScenarioKeys, scenario: &Scenario) -> Result<(), Prob
             "found {name:?} with a motion of the table that ends after the run-up, expected a longer \
              procedure.navigation.duration"
         )));
+    }
+    if matches!(scenario.source, SourceSpec::Solution(_)) {
+        return Ok(());
+    }
+    if test.azimuths.is_some() {
+        return Err(test.azimuths.problem(
+            "found without a solution as the source, expected source.uri = \"solution:…\": another unit's heading is motion.heading",
+        ));
     }
     if *test.run_ups > 1 {
         let in_process = matches!(scenario.endpoint, EndpointSpec::InProcess);

@@ -109,13 +109,15 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
     further::check_endpoint(&keys.endpoint.uri, &scenario)?;
     further::check_limits(&keys.endpoint.uri, &scenario)?;
     further::check_reference(&keys.procedure.calibration, &scenario)?;
-    trajectory::check(&keys, &scenario)?;
+    let scenario = trajectory::check(&keys, scenario)?;
     if let Some(keys) = &keys.turntable.drive {
         drive::check_reach(keys, &scenario)?;
     }
     let faults = faults::read(&keys.faults, &scenario)?;
     let operator = faults::steps(&keys.operator, &scenario)?;
-    Ok(Scenario { document, faults, operator, ..scenario })
+    let scenario = Scenario { document, faults, operator, ..scenario };
+    trajectory::check_steps(&keys, &scenario)?;
+    Ok(trajectory::without_bench(scenario))
 }
 
 /// Refuses a repetition of samples that exist only once, and pacing of instruments and ports that have

@@ -3,7 +3,7 @@
 use super::reader::Reader;
 use crate::error::Problem;
 use crate::keys::{PowerKeys, ScenarioKeys};
-use crate::model::Scenario;
+use crate::model::{Scenario, SourceSpec};
 use octant_faults::catalogue::{Acts, FaultKind};
 use octant_faults::kinds::unit::BROWN_OUT;
 use octant_power::{Outlet, PowerPlan, SupplySetting, check_power_port};
@@ -13,7 +13,8 @@ use std::time::Duration;
 pub(super) fn read(keys: &ScenarioKeys, scenario: &Scenario) -> Result<Option<PowerPlan>, Problem> {
     let Some(power) = &keys.power else { return Ok(None) };
     check_power_port(&power.port).map_err(|error| power.port.problem(error.to_string()))?;
-    if scenario.endpoint.device().is_none() {
+    let is_solution = matches!(scenario.source, SourceSpec::Solution(_));
+    if scenario.endpoint.device().is_none() && !is_solution {
         return Err(power.port.problem(
             "found a supply and no device that it could feed: expected a port in endpoint.uri, such as \
              serial:/dev/ttyUSB0",

@@ -191,6 +191,10 @@ const HEADING_OUTPUT: Keys = &[
     ("constant_error_deg", signed(DEG, "constant error")),
     ("transmission_error_deg", magnitude(DEG, "error without constant and latency, largest")),
     ("transmission_rms_deg", magnitude(DEG, "error without constant and latency, rms")),
+    (
+        "transmission_uncertainty_deg",
+        magnitude(DEG, "expanded uncertainty of both (95 %), without that of the reference"),
+    ),
     ("latency_s", signed(SECOND, "latency against the reference")),
     ("latency_uncertainty_s", magnitude(SECOND, "expanded uncertainty of the latency (95 %)")),
     ("follow_up_10", table("follow-up error up to 10 deg/s", &[], FOLLOW_UP)),
