@@ -19,8 +19,9 @@
 //! The gyros are examined in the case, with the encoders' turn subtracted, so that neither a move
 //! nor a ship's sway through turning axes shows. An edge counts only if it is in the gyros
 //! themselves, not in the encoders alone, and if it is larger than axes and encoders can cause in a
-//! turn that both measure, as at every start of a move. Velocity is examined in n, where a turn
-//! doesn't show.
+//! turn that both measure, as at every start of a move. The white noise of the encoders is measured
+//! while the gimbals rest: what it makes of an edge is allowed. Velocity is examined in n, where a
+//! turn doesn't show.
 
 mod way;
 
@@ -81,6 +82,8 @@ pub struct Block {
     pub velocity: Vector3<f64>,
     /// Encoder angles at the end of the block.
     pub gimbal: GimbalAngles,
+    /// True if the gimbals rest and have settled.
+    pub rests: bool,
     /// Turn by the gyros beyond the Earth's, rad, if the gimbals rest and the Earth's is known.
     pub beyond: Option<Vector3<f64>>,
 }
@@ -108,6 +111,8 @@ pub struct Continuity {
     sway: f64,
     /// Change of the specific force whose edge is half of the velocity's limit, m/s².
     correction_mps2: f64,
+    /// Edge by the white noise of a reading, per standard deviation of the difference of two.
+    of_readings: f64,
     /// Parameters of the cumulative sums: turn of a block attributed to noise, and limit, rad.
     sum: (f64, f64),
 
@@ -127,14 +132,16 @@ pub struct Continuity {
     encoder_edges: u32,
     /// Blocks until the stretch ends.
     stretch: u32,
+    /// Sums of |difference| of two readings at rest, azimuth and roll, rad, and their number.
+    flicker: ([f64; 2], u32),
 }
 
 #[cfg(feature = "state")]
 octant_state::state! {
     Continuity {
-        values: ring, others, next, filled, way, middle, sums, widened, alarms, encoder_edges, stretch;
+        values: ring, others, next, filled, way, middle, sums, widened, alarms, encoder_edges, stretch, flicker;
         parts: ;
-        kept: weights, limits, axes, corner, sway, correction_mps2, sum;
+        kept: weights, limits, axes, corner, sway, correction_mps2, of_readings, sum;
         check: Self::check_places
     }
 }
@@ -235,6 +242,7 @@ impl Continuity {
                 Base::Still => 0.0,
                 Base::Moving(motion) => motion.rate_radps * block_s,
             },
+            of_readings: NOISE_SIGMAS * norm_of_differences(&weights),
             sum: (
                 (SUM_RATE * walk + known) * block_s,
                 0.5 * SUM_LOG * walk / SUM_RATE
@@ -251,6 +259,7 @@ impl Continuity {
             alarms: [0; 2],
             encoder_edges: 0,
             stretch: 0,
+            flicker: ([0.0; 2], 0),
         })
     }
 
@@ -296,6 +305,9 @@ impl Continuity {
         let azimuth = block.gimbal.azimuth_rad() - before.azimuth_rad();
         let roll = block.gimbal.roll_rad() - before.roll_rad();
         let (turn, velocity) = (&block.turn, &block.velocity);
+        if block.rests {
+            self.read_at_rest([azimuth, roll]);
+        }
         // Sines and cosines of gimbals at rest are known from the block before.
         let case = if block.gimbal == before && self.middle.0 == before {
             self.middle.1 * turn
@@ -364,7 +376,11 @@ impl Continuity {
         let turns = self.fastest().iter().sum::<f64>() > TURNS_RAD;
         let corners = self.corners();
         let found = body > limit
-            && case > limit + corners + self.axes * (body + azimuth.abs() + roll.abs());
+            && case
+                > limit
+                    + corners
+                    + self.readings()
+                    + self.axes * (body + azimuth.abs() + roll.abs());
         if found && turns && case < ENCODERS_SHARE * body {
             self.encoder_edges = self.encoder_edges.saturating_add(1);
         }
@@ -379,6 +395,24 @@ impl Continuity {
             turned += azimuth + roll;
         }
         self.corner * turned
+    }
+
+    /// Takes the differences of two readings of gimbals at rest, azimuth and roll, rad.
+    fn read_at_rest(&mut self, differences: [f64; 2]) {
+        let (sums, count) = &mut self.flicker;
+        for (sum, difference) in sums.iter_mut().zip(differences) {
+            *sum += difference.abs();
+        }
+        *count = count.saturating_add(1);
+    }
+
+    /// Largest edge that the white noise of the encoders causes, rad, as it was at rest so far. Sums of magnitudes: a
+    /// single wrong reading tells little.
+    fn readings(&self) -> f64 {
+        // Mean magnitude of a normal variable per standard deviation: √(2/π).
+        const MEAN: f64 = 0.797_884_560_802_865_4;
+        let ([azimuth, roll], count) = self.flicker;
+        self.of_readings * libm::hypot(azimuth, roll) / (MEAN * f64::from(count.max(1)))
     }
 
     /// Largest turns of azimuth and roll in a block, rad.
@@ -411,6 +445,13 @@ pub(crate) const POINTS: usize = 20;
 
 /// Degree up to which polynomials are suppressed: a ship's sway of 6 s leaves 1e-6 of its rate.
 const DEGREE: usize = 7;
+
+/// Standard deviation of the output for increments that are differences of readings, in that of one difference of two.
+fn norm_of_differences(weights: &[f64; POINTS]) -> f64 {
+    let inner: f64 = weights.windows(2).map(|two| (two[0] - two[1]) * (two[0] - two[1])).sum();
+    let (first, last) = (weights[0], weights[POINTS - 1]);
+    libm::sqrt(0.5 * (inner + first * first + last * last))
+}
 
 /// Weights of a step from which the polynomials up to the degree are removed, of norm one.
 fn step_weights() -> [f64; POINTS] {

@@ -158,4 +158,6 @@ pub struct HealthCounts {
     pub drifting: u64,
     /// Epochs whose aiding had another stamp than its sample; not used.
     pub aiding_stale: u64,
+    /// Steps of the solution that its samples don't explain, while a correction was at work.
+    pub solution_steps: u64,
 }

@@ -45,7 +45,7 @@ fn ship() -> Base {
 
 fn block(turn: Vector3<f64>, beyond: Option<Vector3<f64>>) -> Block {
     let gimbal = GimbalAngles::default();
-    Block { turn, velocity: Vector3::new(0.0, 0.0, -0.98), gimbal, beyond }
+    Block { turn, velocity: Vector3::new(0.0, 0.0, -0.98), gimbal, rests: true, beyond }
 }
 
 /// Block in which a rotation about x, rad, is found that is added over `blocks` blocks.

@@ -95,6 +95,7 @@ impl Core {
             turn: felt.delta_theta + errors * felt.delta_theta,
             velocity: felt.delta_velocity_n,
             gimbal,
+            rests: !moves,
             beyond: (still && settled && !moves).then_some(beyond.0),
         };
         let edge = continuity.add(&block);

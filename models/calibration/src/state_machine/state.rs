@@ -19,7 +19,7 @@ extern crate alloc;
 /// Format of the state of a core. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
 pub const FORMAT: StateFormat =
-    StateFormat { magic: "OCTANTCC", version: 5, what: "the state of a calibration core" };
+    StateFormat { magic: "OCTANTCC", version: 6, what: "the state of a calibration core" };
 
 impl Core {
     /// Appends everything that the core needs to continue bit for bit after this step: the same

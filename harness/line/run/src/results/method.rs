@@ -111,6 +111,7 @@ impl MethodRun {
             let of_core = &observers.measurements.health;
             let mut health = of_core.counts().clone();
             health.measurements = conclusion.measurements.unwrap_or(health.measurements);
+            health.solution_steps = observers.answers.steps();
             let nis_mean = conclusion.nis_mean.or(of_core.nis_mean());
             let uncertainty = conclusion.solution.as_ref().map(uncertainty_of);
             let calibrated = observers.moments.calibrated.as_ref();

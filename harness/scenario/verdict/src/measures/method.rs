@@ -129,6 +129,12 @@ const HEALTH: Keys = &[
     ("gimbal_slips", count("samples in which gyros and encoders did not show the same turn")),
     ("drifting", count("samples in which a parameter was found to drift")),
     ("aiding_stale", count("samples whose aiding had another stamp")),
+    (
+        "solution_steps",
+        count(
+            "steps of the solution that its samples don't explain, while a correction was at work",
+        ),
+    ),
 ];
 
 pub(super) const NAVIGATION: Place = table(
