@@ -2,12 +2,13 @@
 //!
 //! A run is the one of `octant run`, with the same folder of evidence; only the terminal is left out.
 
+pub use crate::asked::Evidence;
 pub use crate::attendant::OperatorWays;
-pub use crate::evidenced::Evidence;
 pub use crate::failure::Failure;
 pub use crate::run_request::RunRequest;
 
-use crate::evidenced::{Answers, Asked, Begun, evidence, without_fmus};
+use crate::asked::{Answers, Asked, Begun, without_fmus};
+use crate::evidenced::evidence;
 use crate::progress::Follower;
 use octant_base::control::Control;
 use octant_fmu_bind::OpenedFmus;

@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
 mod arguments;
+mod asked;
 mod attendant;
 mod campaign;
 mod capture;

@@ -1,8 +1,8 @@
 //! A run whose solution comes from a port: it is taken while the bench procedure goes, and scored at the end as the file that
 //! it has become.
 
+use crate::asked::{Answers, Asked, Evidence, execute, prepare};
 use crate::attendant::Attendant;
-use crate::evidenced::{Answers, Asked, Evidence, execute, prepare};
 use crate::failure::Failure;
 use crate::progress::Follower;
 use crate::run_request::RunRequest;
@@ -70,6 +70,10 @@ pub(crate) fn evidence(
     asked.scenario = scenario;
     begun.inputs = octant_evidence::inputs(&asked.scenario)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?;
+    for input in begun.inputs.iter_mut().filter(|input| input.file.ends_with(OF_RUN)) {
+        // The folder has another name when the run has ended.
+        OF_RUN.clone_into(&mut input.file);
+    }
     begun.bench = Some(bench(&acquired));
     let draws = DrawnValues::of(&asked.scenario, &Seeded(asked.seed));
     write(&folder.join("scenario.toml"), asked.scenario.to_resolved_toml(asked.seed, &draws))?;

@@ -1,7 +1,7 @@
 //! `octant verify --reexecute`: runs the content of a folder of evidence again from that folder
 //! alone.
 
-use super::evidenced::{execute, prepare, texts};
+use super::asked::{execute, prepare, texts};
 use super::progress::Follower;
 use crate::failure::Failure;
 use crate::terminal::note;

@@ -6,24 +6,23 @@
 //! unit has no power.
 
 mod clock;
+mod error;
 mod steps;
 mod unit;
+
+pub use self::error::AcquireError;
 
 use self::clock::BenchClock;
 use self::steps::DueSteps;
 use self::unit::BenchUnit;
 use crate::bench::attended::before_start;
-use crate::bench::error::SetupError;
 use octant_base::control::Control;
-use octant_link::PortError;
 use octant_link::capture::{ArrivalStamp, CaptureCounts, LineCapture};
 use octant_link::port::{self, Port};
-use octant_power::PowerError;
 use octant_recorder::event::PowerRecord;
 use octant_scenario::Scenario;
 use octant_scenario::trajectory::SolutionLine;
-use octant_source::SourceError;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant, SystemTime};
 
@@ -34,37 +33,6 @@ const OPEN_EVERY: Duration = Duration::from_millis(200);
 
 /// Time for which a solution without run-ups is taken beyond its duration.
 const SLACK: Duration = Duration::from_secs(1);
-
-/// A solution can't be taken from its port.
-#[derive(Debug, thiserror::Error)]
-pub enum AcquireError {
-    /// Nobody can be asked.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// The port can't be opened.
-    #[error(transparent)]
-    Port(#[from] PortError),
-    /// The port carries no bytes, or the scenario has none.
-    #[error("found {found}, expected a serial line, UDP or TCP")]
-    NoLine {
-        /// The port.
-        found: String,
-    },
-    /// The file can't be written.
-    #[error("write {}: {error}", file.display())]
-    File {
-        /// The file.
-        file: PathBuf,
-        /// Error of the operating system.
-        error: std::io::Error,
-    },
-    /// The supply or relay doesn't obey.
-    #[error(transparent)]
-    Power(#[from] PowerError),
-    /// The table doesn't obey.
-    #[error(transparent)]
-    Table(#[from] SourceError),
-}
 
 /// End of a run on a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

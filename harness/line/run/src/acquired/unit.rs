@@ -1,6 +1,6 @@
 //! Power of the unit, and the table under it.
 
-use super::AcquireError;
+use super::error::AcquireError;
 use octant_base::control::Control;
 use octant_endpoint::power_record;
 use octant_power::PowerOutlet;
