@@ -36,6 +36,7 @@ struct Before {
 #[derive(Clone, Debug)]
 pub struct Follower {
     told: Told,
+    known: KnownNoise,
     before: Option<Before>,
     broken: bool,
     state: Box<State>,
@@ -54,10 +55,12 @@ struct State {
 }
 
 impl Follower {
-    /// Creates the test of a unit that tells these quantities.
+    /// Creates the test of a unit that tells these quantities, with what the noise is that is known.
     #[must_use]
-    pub fn new(told: Told) -> Self {
-        let windows = LENGTHS_S.map(Windows::of);
+    pub fn new(told: Told, known: KnownNoise) -> Self {
+        // The noise of an instrument is large: half an hour of the shortest windows and a part of the rest is enough.
+        let is_sparse = |length_s| known == KnownNoise::Simulated && length_s < 10;
+        let windows = LENGTHS_S.map(|length_s| Windows::of(length_s, is_sparse(length_s)));
         let state = State {
             past: Past::default(),
             windows,
@@ -67,7 +70,7 @@ impl Follower {
             nonlinear: 0,
             turned: 0,
         };
-        Self { told, before: None, broken: false, state: Box::new(state) }
+        Self { told, known, before: None, broken: false, state: Box::new(state) }
     }
 
     /// Notes that the navigation isn't free, or isn't compared, between the comparisons before and after.
@@ -119,13 +122,13 @@ impl Follower {
         self.state.interrupt();
     }
 
-    /// Derives the result, with what the noise is that is known.
+    /// Derives the result.
     #[must_use]
-    pub fn score(&self, known: KnownNoise) -> FollowedScore {
+    pub fn score(&self) -> FollowedScore {
         let State { windows, compared, breaks, unknown, nonlinear, turned, .. } = &*self.state;
         FollowedScore::of(&Material {
             told: self.told,
-            known,
+            known: self.known,
             windows,
             compared: *compared,
             breaks: *breaks,

@@ -95,19 +95,22 @@ impl<const N: usize> Normal<N> {
 
     fn add(&mut self, row: &[f64; N]) {
         for (i, sums) in self.sums.iter_mut().enumerate() {
+            // Lags that are longer than the window.
+            if row[i] == 0.0 {
+                continue;
+            }
             for (sum, value) in sums[i..].iter_mut().zip(&row[i..]) {
                 *sum += row[i] * value;
             }
         }
     }
 
-    /// Regresses the last column on column `of` and the first `nuisance` ones; `None` where the rows don't suffice or
-    /// the nuisance explains the regressor.
+    /// Regresses column `response` on column `of` before it and the first `nuisance` ones; `None` where the rows don't
+    /// suffice or the nuisance explains the regressor.
     #[must_use]
-    pub fn slope(&self, nuisance: usize, of: usize) -> Option<Slope> {
+    pub fn slope(&self, nuisance: usize, of: usize, response: usize) -> Option<Slope> {
         // Sweeps the nuisance out of the two columns that are left.
-        let mut m = self.sums;
-        let (response, mut rank) = (N - 1, 0);
+        let (mut m, mut rank) = (self.sums, 0);
         for pivot in 0..nuisance {
             let size = m[pivot][pivot];
             if !(size > DEPENDENT * self.sums[pivot][pivot]) {

@@ -1,16 +1,20 @@
 //! Sums of the error dynamics over windows of a length, and the regressions of their residuals.
 
 use crate::interval::{ACCEL_PARAMETERS, Effects, Errors, GYRO_PARAMETERS, Interval, Noise};
-use crate::regression::{Block, Normal, Slope};
+use crate::regression::{BLOCK, Block, Normal, Slope};
 
 /// Lags of the answers behind the samples that are tried, s; none is longer than the window.
 pub const LAGS_S: [usize; 8] = [0, 1, 2, 5, 10, 20, 30, 60];
 /// Number of intervals that are remembered: the longest window with the longest lag before it, and a margin.
 pub const REMEMBERED: usize = 256;
 
+/// Number of windows from which on sparse ones leave out three of four blocks.
+const SPARSE_FROM: u64 = 900;
+
 const PARAMETERS: usize = GYRO_PARAMETERS + ACCEL_PARAMETERS;
 const OF_ATTITUDE: usize = GYRO_PARAMETERS + LAGS_S.len() + 1;
-const OF_VELOCITY: usize = PARAMETERS + LAGS_S.len() + 1;
+/// Two responses: with the tilt that the unit tells, and without.
+const OF_VELOCITY: usize = PARAMETERS + LAGS_S.len() + 2;
 
 /// The last intervals without a break, oldest overwritten.
 #[derive(Clone, Debug)]
@@ -61,15 +65,17 @@ impl Past {
 
 /// Windows of one length, one after the other, with their regressions.
 ///
-/// Each quantity is regressed over all windows, and over those without a turn, which errors of encoders at a turn can't
-/// spoil. The velocity is regressed with the tilt that the unit tells, which turns the force of a moving ship, and with
-/// none, which a coarse or false attitude can't spoil.
+/// Each quantity is regressed over the windows without a turn, and over those with one: errors of encoders at a turn spoil
+/// the second alone. The velocity is regressed with the tilt that the unit tells, which turns the force of a moving ship,
+/// and with none, which a coarse or false attitude can't spoil.
 #[derive(Clone, Debug)]
 pub struct Windows {
     length_s: usize,
+    /// True if one of four blocks is enough, once there are some.
+    is_sparse: bool,
     open: Option<Open>,
     attitude: [Quantity<OF_ATTITUDE>; 2],
-    velocity: [Quantity<OF_VELOCITY>; 3],
+    velocity: [Quantity<OF_VELOCITY>; 2],
     windows: u64,
 }
 
@@ -153,13 +159,14 @@ impl Windows {
     /// Makes windows of at least this length, s, which is longer where the answers change more seldom. Lines are taken
     /// from blocks of two minutes, of at least four windows and at most twelve.
     #[must_use]
-    pub fn of(length_s: usize) -> Self {
+    pub fn of(length_s: usize, is_sparse: bool) -> Self {
         let rows = 120 / length_s;
         Self {
             length_s,
+            is_sparse,
             open: None,
             attitude: [0; 2].map(|_| Quantity::of(rows)),
-            velocity: [0; 3].map(|_| Quantity::of(rows)),
+            velocity: [0; 2].map(|_| Quantity::of(rows)),
             windows: 0,
         }
     }
@@ -180,6 +187,10 @@ impl Windows {
 
     /// Takes a new answer's errors at the end of the last interval, which end one window and begin the next.
     pub fn answer(&mut self, errors: &Errors, past: &Past) {
+        let block = BLOCK * self.length_s;
+        if self.is_sparse && self.windows > SPARSE_FROM && past.count / block % 4 != 0 {
+            return self.interrupt();
+        }
         if let Some(open) = &self.open {
             if open.elapsed_s < self.length_s as f64 - 0.5 {
                 return;
@@ -207,24 +218,20 @@ impl Windows {
                 row[GYRO_PARAMETERS + lag] = effect[axis];
             }
             row[OF_ATTITUDE - 1] = errors.phi_rad[axis] - open.phi_rad[axis];
-            self.attitude[0].push(axis, &row);
-            if open.is_quiet {
-                self.attitude[1].push(axis, &row);
-            }
+            let turns = usize::from(!open.is_quiet);
+            self.attitude[turns].push(axis, &row);
             let mut row = [0.0; OF_VELOCITY];
             row[..GYRO_PARAMETERS].copy_from_slice(&open.by_tilt[axis]);
             row[GYRO_PARAMETERS..PARAMETERS].copy_from_slice(&open.by_force[axis]);
             for (lag, effect) in effects.iter().enumerate() {
                 row[PARAMETERS + lag] = effect[2 + axis];
             }
-            let (with, without) = (open.carried.velocity_mps, open.velocity_mps);
-            let ways = [(with, true), (without, true), (without, open.is_quiet)];
-            for (velocity, (carried, counts)) in self.velocity.iter_mut().zip(ways) {
-                row[OF_VELOCITY - 1] = errors.velocity_mps[axis] - carried[axis];
-                if counts {
-                    velocity.push(axis, &row);
-                }
+            for (response, carried) in
+                [open.carried.velocity_mps, open.velocity_mps].into_iter().enumerate()
+            {
+                row[OF_VELOCITY - 2 + response] = errors.velocity_mps[axis] - carried[axis];
             }
+            self.velocity[turns].push(axis, &row);
         }
     }
 
@@ -247,20 +254,28 @@ impl Windows {
 
     /// Regressions of the attitude for each lag, s.
     pub fn attitude(&self) -> impl Iterator<Item = (usize, Slope)> {
-        self.attitude.iter().flat_map(|of| self.slopes(GYRO_PARAMETERS, &of.normal))
+        let of = |of| self.slopes(GYRO_PARAMETERS, of, OF_ATTITUDE - 1);
+        self.attitude.iter().flat_map(move |quantity| of(&quantity.normal))
     }
 
     /// Regressions of the velocity for each lag, s.
     pub fn velocity(&self) -> impl Iterator<Item = (usize, Slope)> {
-        self.velocity.iter().flat_map(|of| self.slopes(PARAMETERS, &of.normal))
+        let responses = [OF_VELOCITY - 2, OF_VELOCITY - 1];
+        self.velocity.iter().flat_map(move |quantity| {
+            let of = move |response| self.slopes(PARAMETERS, &quantity.normal, response);
+            responses.into_iter().flat_map(of)
+        })
     }
 
     fn slopes<'a, const N: usize>(
         &self,
         nuisance: usize,
         of: &'a Normal<N>,
+        response: usize,
     ) -> impl Iterator<Item = (usize, Slope)> + use<'a, N> {
         let lags = 0..self.lags();
-        lags.filter_map(move |lag| Some((LAGS_S[lag], of.slope(nuisance, nuisance + lag)?)))
+        lags.filter_map(move |lag| {
+            Some((LAGS_S[lag], of.slope(nuisance, nuisance + lag, response)?))
+        })
     }
 }

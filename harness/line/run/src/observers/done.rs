@@ -5,6 +5,7 @@ use octant_calibration::config::{CoreConfig, Estimator, Prior, StaticIntervals};
 use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_calibration::state_machine::prior_after_alignment;
 use octant_endpoint::Tells;
+use octant_followed::KnownNoise;
 use octant_sample::{GimbalAngles, Mode, Output};
 use octant_scenario::{CalibrationSpec, Method, Scenario};
 use octant_score::work::Work;
@@ -30,6 +31,7 @@ pub struct PlannedWork {
     /// Quantities that the unit reports; `None`: not known, and its answers aren't checked against
     /// its input.
     tells: Option<Tells>,
+    is_dithered: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +54,12 @@ impl PlannedWork {
     #[must_use]
     pub fn prior(&self) -> Option<&Prior> {
         self.prior.as_ref()
+    }
+
+    /// Noise of the samples that is known.
+    #[must_use]
+    pub(super) fn known_noise(&self) -> KnownNoise {
+        if self.is_dithered { KnownNoise::Dither } else { KnownNoise::Simulated }
     }
 
     /// Returns the quantities that the unit reports, where they are known.
@@ -105,7 +113,8 @@ impl PlannedWork {
             _ => None,
         };
         let period_ns = core.sample_period_ns;
-        Self { work, stops, alignment_s, prior, period_ns, tells: Some(tells) }
+        let is_dithered = scenario.dither.is_some();
+        Self { work, stops, alignment_s, prior, period_ns, tells: Some(tells), is_dithered }
     }
 }
 

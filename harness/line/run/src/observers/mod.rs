@@ -41,7 +41,7 @@ use self::moments::{Moment, Moments};
 use self::session::SessionTrack;
 use self::solution::{SolutionErrors, attitude_error, errors, position_error, velocity_error};
 use octant_endpoint::Tells;
-use octant_followed::{Compared, Follower, Told};
+use octant_followed::{Compared, Follower, KnownNoise, Told};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{
     DeviceTime, Innovation, Mode, NavigationCovariance, NoiseIntegral, Output, Truth,
@@ -139,6 +139,7 @@ impl Observers {
         let calibration_s = plan.work.calibration_s.unwrap_or(0.0);
         let follows = plan.tells().is_none_or(|tells| tells.follows);
         let tells = plan.tells().unwrap_or(Tells::ALL);
+        let known = plan.known_noise();
         // A solution that was made elsewhere may lack points.
         let gaps_s = (!follows).then(|| plan.period_s());
         let now = Now {
@@ -157,7 +158,7 @@ impl Observers {
             moments: Moments::new(tells, plan.standing_rad(), plan.prior().copied()),
             done: Done::towards(plan),
             drift: NavigationDrift::of_gaps(gaps_s),
-            followed: Follower::new(quantities(tells)),
+            followed: Follower::new(quantities(tells), known),
             known_noise: None,
             information: CalibrationInformation::default(),
             convergence: Convergence::over(calibration_s),
@@ -187,7 +188,7 @@ impl Observers {
         self.tells.position = told(TELLS_POSITION);
         self.tells.tilt = told(TELLS_TILT);
         self.moments.unit_tells(self.tells);
-        self.followed = Follower::new(quantities(self.tells));
+        self.followed = Follower::new(quantities(self.tells), KnownNoise::Simulated);
     }
 
     /// Takes the source's epoch, before faults alter it.

@@ -17,8 +17,8 @@ use octant_score::parameters::{
     least_gain, nees, score, score_further, set_gains, worst_normalized_error,
 };
 use octant_score::summary::{
-    AlignmentResult, CalibrationScore, CaseRestScore, FollowedScore, HeightChannel, KnownNoise,
-    NavigationScore, SolutionScore,
+    AlignmentResult, CalibrationScore, CaseRestScore, FollowedScore, HeightChannel, NavigationScore,
+    SolutionScore,
 };
 use std::sync::Arc;
 
@@ -140,13 +140,7 @@ impl MethodRun {
             None => None,
         };
         let follows = observers.answers.has_to_follow() && navigation.is_some();
-        let followed = follows.then(|| {
-            observers.followed.score(if scenario.dither.is_some() {
-                KnownNoise::Dither
-            } else {
-                KnownNoise::Simulated
-            })
-        });
+        let followed = follows.then(|| observers.followed.score());
         let recorder = match recorder.finish() {
             Ok(summary) => summary,
             // The end of the recording found no space: the file is readable up to there, as after any

@@ -287,11 +287,12 @@ pub(crate) fn trial(course: &Course, way: &Way, seed: u64, mut take: impl FnMut(
 
 /// Scores a trial with the function that scores runs.
 pub(crate) fn scored(course: &Course, way: &Way, seed: u64) -> FollowedScore {
-    let mut follower = Follower::new(Told { attitude: true, velocity: true, position: true });
+    let told = Told { attitude: true, velocity: true, position: true };
+    let mut follower = Follower::new(told, KnownNoise::Simulated);
     trial(course, way, seed, |second, line| {
         let Line { answer, truth, noise } = line;
         let (now_ns, noise) = (second * 1_000_000_000, Some(*noise));
         follower.compare(&Compared { now_ns, answer, truth, noise });
     });
-    follower.score(KnownNoise::Simulated)
+    follower.score()
 }
