@@ -17,8 +17,8 @@ use octant_score::parameters::{
     least_gain, nees, score, score_further, set_gains, worst_normalized_error,
 };
 use octant_score::summary::{
-    AlignmentResult, CalibrationScore, CaseRestScore, FollowedScore, HeightChannel, NavigationScore,
-    SolutionScore,
+    AlignmentResult, CalibrationScore, CaseRestScore, FollowedScore, HeightChannel,
+    NavigationScore, SolutionScore,
 };
 use std::sync::Arc;
 
