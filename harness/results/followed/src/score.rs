@@ -104,7 +104,7 @@ impl Channel {
     fn of(windows: &Windows, (lag_s, slope): (usize, Slope)) -> Self {
         let Slope { value, sigma, regressor_rms, residual_rms } = slope;
         let off = (value - 1.0).abs();
-        let verdict = if sigma > SIGMA_MAX {
+        let verdict = if !(sigma <= SIGMA_MAX) {
             Followed::NotTested
         } else if off <= TOLERANCE + SIGMAS * sigma {
             Followed::Followed
@@ -240,7 +240,7 @@ impl Material<'_> {
         let Self { compared, breaks, nonlinear, turned, .. } = self;
         let windows = self.windows.iter().map(Windows::count).max().unwrap_or_default();
         format!(
-            "{windows} windows of free navigation are too few: {compared} comparisons, {breaks} breaks, \
+            "{windows} windows of free navigation are too few, or have no noise: {compared} comparisons, {breaks} breaks, \
              {turned} turns, {nonlinear} errors that are large or unknown"
         )
     }

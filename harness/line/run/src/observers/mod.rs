@@ -139,7 +139,7 @@ impl Observers {
         let calibration_s = plan.work.calibration_s.unwrap_or(0.0);
         let follows = plan.tells().is_none_or(|tells| tells.follows);
         let tells = plan.tells().unwrap_or(Tells::ALL);
-        let followed = Follower::new(quantities(tells), plan.known_noise());
+        let known = plan.known_noise();
         // A solution that was made elsewhere may lack points.
         let gaps_s = (!follows).then(|| plan.period_s());
         let now = Now {
@@ -158,7 +158,7 @@ impl Observers {
             moments: Moments::new(tells, plan.standing_rad(), plan.prior().copied()),
             done: Done::towards(plan),
             drift: NavigationDrift::of_gaps(gaps_s),
-            followed,
+            followed: Follower::new(quantities(tells), known),
             known_noise: None,
             information: CalibrationInformation::default(),
             convergence: Convergence::over(calibration_s),
