@@ -516,6 +516,13 @@ fn a_requirement_that_no_case_can_meet_is_refused() {
         .replace("[\"0 deg\", \"60 deg\"]", "[1, 2]");
     let error = Bench::new(&seeds).refusal();
     assert!(error.contains("which the campaign gives to each case"), "{error}");
+    let set = CAMPAIGN.replacen(
+        "file = \"short.toml\"",
+        "file = \"short.toml\"\nset = { seed = \"7\" }",
+        1,
+    );
+    let error = Bench::new(&set).refusal();
+    assert!(error.contains("scenario \"short\" sets seed"), "{error}");
     let unsure = format!("{CAMPAIGN}[stop]\nrequirement = \"NAV-1\"\nconfidence = 0.01\n");
     let error = Bench::new(&unsure).refusal();
     assert!(error.contains("between 0.5 and 0.999999"), "{error}");

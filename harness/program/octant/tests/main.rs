@@ -18,6 +18,7 @@ mod campaign_objects;
 mod campaign_report;
 mod campaign_scale;
 mod campaign_selection;
+mod campaign_twins;
 #[cfg(unix)]
 mod capture;
 mod case_at_rest;

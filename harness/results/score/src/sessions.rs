@@ -146,6 +146,12 @@ impl Sessions {
                 self.repeated.join(" and ")
             ));
         }
+        if let Some(WidenedSigma { parameter, factor }) = &self.widened {
+            return Some(format!(
+                "the unit states {parameter} with {factor:.1} times the uncertainty without the faults that it has with them: \
+                 shifts in σ of that twin are no measure"
+            ));
+        }
         let parts =
             [("before the first fault", self.before), ("from the first fault on", self.after)];
         let (part, DitherShare { share, sigma, .. }) = parts
@@ -273,10 +279,9 @@ fn over(pairs: &[Pair], window_s: u64, resolution_rad: f64) -> Option<DitherShar
     };
     let middle = median(both.iter().map(|(_, y)| *y).collect());
     let usual = median(both.iter().map(|(_, y)| (y - middle).abs()).collect());
-    // More than half of the answers of a coarse unit don't change.
-    if usual > 0.0 {
-        both.retain(|(_, y)| (y - middle).abs() <= BEYOND * usual);
-    }
+    // Steps of a coarse unit, of which most answers don't change, stay.
+    let usual = usual.max(resolution_rad);
+    both.retain(|(_, y)| (y - middle).abs() <= BEYOND * usual);
     let (mut xx, mut xy) = (0.0, 0.0);
     for (x, y) in &both {
         xx += x * x;

@@ -146,6 +146,11 @@ fn an_ensemble_passes_by_its_bound() {
     let draws = DrawCounts { passed: 2, not_passed: 0, unknown: 0, open: 14, rows: 64 };
     let told = judge(demand, counts, draws).1;
     assert!(told.starts_with("2 of 2 independent draws passed in all of their checks: "), "{told}");
+    // One of three draws failed in one of its four checks: the other two have eight.
+    let counts = VerdictCounts { pass: 11, fail: 1, ..VerdictCounts::default() };
+    let draws = DrawCounts { passed: 2, not_passed: 1, unknown: 0, open: 0, rows: 12 };
+    let told = judge(demand, counts, draws).1;
+    assert!(told.starts_with("2 of 3 independent draws passed in all of their checks: "), "{told}");
     let counts = VerdictCounts { pass: 1000, error: 1, ..VerdictCounts::default() };
     let draws = DrawCounts { passed: 1000, not_passed: 1, unknown: 0, open: 0, rows: 1001 };
     assert_eq!(judge(demand, counts, draws).0, Verdict::Error);

@@ -68,6 +68,13 @@ impl PlanMaker {
                 factor.name
             )));
         }
+        let sets = |member: &&Member| member.set.iter().any(|set| set.starts_with("seed="));
+        if let Some(member) = campaign.scenarios.iter().find(sets) {
+            return Err(contradiction(format!(
+                "scenario {:?} sets seed, which the campaign gives to each case: expected seed of the campaign",
+                member.id
+            )));
+        }
         let file = campaign.requirements.as_deref().map(requirements::load).transpose()?;
         let of_file = file.as_ref().map(requirements::planned).unwrap_or_default();
         let by_test = |id: &str| of_file.iter().any(|planned| planned.check.id == id);

@@ -13,6 +13,7 @@ use crate::judge::twins::{SharedTwins, TwinsSaid};
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
 use crate::store::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
+use crate::store::result_error::ResultError;
 use crate::store::stream_key::StreamKey;
 use octant_verdict::Verdict;
 use std::fs::File;
@@ -93,10 +94,10 @@ pub fn read<'a>(
             return rows.push(None, &mut bytes).map_err(wrong);
         };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
-        if let Some(reason) = shared.contradiction(twins) {
-            let path =
-                results.place(&case.id).map_or_else(Default::default, |at| at.path().to_owned());
-            return Err(ReportError::Form { path, reason });
+        if let Some(reason) = shared.contradiction(twins)
+            && let Some(place) = results.place(&case.id)
+        {
+            return Err(ResultError::Twins { place, reason }.into());
         }
         let outcome = outcome.keep(&mut curves).map_err(wrong)?;
         rows.push(Some(&outcome), &mut bytes).map_err(wrong)

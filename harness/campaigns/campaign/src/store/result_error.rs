@@ -73,4 +73,12 @@ pub enum ResultError {
         /// Value in the plan.
         expected: String,
     },
+    /// It has another twin than a case that shares it.
+    #[error("read {place}: {reason}")]
+    Twins {
+        /// The result.
+        place: ResultPlace,
+        /// Both twins.
+        reason: String,
+    },
 }

@@ -1,6 +1,7 @@
 //! Attacks on campaigns whose cases have twins: plans that can't show what they require, and stored results that were changed.
 
 use super::{Ends, Row, breaks, open};
+use crate::campaign_twins::{CAMPAIGN, SCENARIO, written};
 use crate::common::program::octant_in;
 use crate::common::results;
 use octant_campaign::execute::alike::run_alike;
@@ -10,65 +11,15 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// A calibration of 100 s with two spikes, of which each case has one.
-const SCENARIO: &str = "schema = 1
-title = \"twins\"
-seed = 1
-[imu]
-rate = \"50 Hz\"
-[procedure.calibration]
-duration = \"100 s\"
-stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]
-[[faults]]
-id = \"spike-1\"
-kind = \"spike\"
-trigger = { at = \"60 s\" }
-duration = \"2 samples\"
-channels = \"gyro x\"
-amplitude = \"30 deg/h\"
-[[faults]]
-id = \"spike-2\"
-kind = \"spike\"
-trigger = { at = \"70 s\" }
-duration = \"2 samples\"
-channels = \"gyro y\"
-amplitude = \"30 deg/h\"
-[[requirements]]
-id = \"SHIFT\"
-text = \"No parameter moves.\"
-measure = \"counterfactual.worst_shift_sigma\"
-limit = 3
-[[requirements]]
-id = \"SEEN\"
-text = \"The fault is noticed.\"
-measure = \"counterfactual.undetected\"
-limit = 0
-[[requirements]]
-id = \"QUIET\"
-text = \"No false alarms.\"
-measure = \"counterfactual.false_alarms\"
-limit = 0
-";
-
-const CAMPAIGN: &str = "schema = 1
-title = \"twins\"
-[[scenarios]]
-id = \"twins\"
-file = \"twins.toml\"
-[[factors]]
-name = \"fault\"
-faults = [[\"spike-1\"], [\"spike-2\"]]
-";
-
-fn written(folder: &Path, scenario: &str, campaign: &str) {
-    std::fs::write(folder.join("twins.toml"), scenario).unwrap();
-    std::fs::write(folder.join("campaign.toml"), campaign).unwrap();
+/// The campaign with one draw: two cases with one twin.
+fn one_draw() -> String {
+    CAMPAIGN.replace("replicates = 6\n", "")
 }
 
 /// Results of the two cases, as they are.
 static RESULTS: LazyLock<Vec<Value>> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    written(folder.path(), SCENARIO, CAMPAIGN);
+    written(folder.path(), SCENARIO, &one_draw());
     let plan = Plan::of(&folder.path().join("campaign.toml")).unwrap();
     let cases: Vec<&Case> = plan.cases.iter().collect();
     let results = run_alike(plan.planned(cases[0]).unwrap(), &cases);
@@ -90,12 +41,16 @@ fn planned(scenario: &str, campaign: &str) -> (u8, String) {
     octant(folder.path(), &["campaign", "plan", "campaign.toml", "--out", "out"])
 }
 
-/// Changes the stored results, makes their hashes anew, and merges and reports them.
+/// Changes the stored results, makes their hashes anew, and makes tables and report of them.
 fn reported(change: impl Fn(usize, &mut Value)) -> (u8, String) {
     let folder = tempfile::tempdir().unwrap();
-    written(folder.path(), SCENARIO, CAMPAIGN);
-    let plan = Plan::of(&folder.path().join("campaign.toml")).unwrap();
-    let out = folder.path().join("out");
+    reported_in(folder.path(), change)
+}
+
+fn reported_in(folder: &Path, change: impl Fn(usize, &mut Value)) -> (u8, String) {
+    written(folder, SCENARIO, &one_draw());
+    let plan = Plan::of(&folder.join("campaign.toml")).unwrap();
+    let out = folder.join("out");
     plan.write(&out, false).unwrap();
     for (index, (case, result)) in plan.cases.iter().zip(RESULTS.iter()).enumerate() {
         let mut result = result.clone();
@@ -103,10 +58,10 @@ fn reported(change: impl Fn(usize, &mut Value)) -> (u8, String) {
         result["summary_blake3"] = hash_of_summary(&result["summary"]).into();
         results::put(&out, &case.id, &(result.to_string() + "\n"));
     }
-    let merged = octant(folder.path(), &["campaign", "merge", "out"]);
-    let shown = octant(folder.path(), &["campaign", "report", "out"]);
-    // The report is as severe as the tables.
-    assert_eq!(merged.0, shown.0, "{merged:?} {shown:?}");
+    let merged = octant(folder, &["campaign", "run", "out"]);
+    let shown = octant(folder, &["campaign", "report", "out"]);
+    // What has no tables has no report.
+    assert_eq!(merged.0 > 3, shown.0 > 3, "{merged:?} {shown:?}");
     shown
 }
 
@@ -144,6 +99,28 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
+/// Puts an alarm into the twin of a result.
+fn alarm(result: &mut Value) {
+    result["verdict"] = "fail".into();
+    let summary = &mut result["summary"];
+    summary["verdict"] = "fail".into();
+    summary["counterfactual"]["false_alarms"] = 1.into();
+    let quiet = &mut summary["requirements"][3];
+    quiet["verdict"] = "fail".into();
+    (quiet["value"], quiet["margin"]) = (1.0.into(), (-1.0).into());
+}
+
+#[test]
+fn a_requirement_that_fails_is_not_met() {
+    let folder = tempfile::tempdir().unwrap();
+    let (status, words) = reported_in(folder.path(), |_, result| alarm(result));
+    assert_eq!(status, 1, "{words}");
+    let dispositions = folder.path().join("out/dispositions.toml");
+    let dispositions = std::fs::read_to_string(dispositions).unwrap();
+    assert!(dispositions.contains("QUIET is not met: 2 of 2 checks failed"), "{dispositions}");
+    assert!(!dispositions.contains("is not shown"), "{dispositions}");
+}
+
 #[test]
 fn the_campaign_itself_passes() {
     let (status, words) = reported(|_, _| {});
@@ -170,7 +147,7 @@ fn plans_that_can_show_nothing_are_refused() {
 fn a_fault_that_never_comes_shows_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let late = SCENARIO.replace("{ at = \"60 s\" }", "{ when = \"nis above 1e9\" }");
-    written(folder.path(), &late, CAMPAIGN);
+    written(folder.path(), &late, &one_draw());
     let plan = octant(folder.path(), &["campaign", "plan", "campaign.toml", "--out", "out"]);
     assert_eq!(plan.0, 0, "{plan:?}");
     check(&rows()[2], octant(folder.path(), &["campaign", "run", "out"]));
@@ -205,13 +182,7 @@ fn results_that_were_changed_are_refused() {
         &rows()[6],
         reported(|index, result| {
             if index == 1 {
-                result["verdict"] = "fail".into();
-                let summary = &mut result["summary"];
-                summary["verdict"] = "fail".into();
-                summary["counterfactual"]["false_alarms"] = 1.into();
-                let quiet = &mut summary["requirements"][2];
-                quiet["verdict"] = "fail".into();
-                (quiet["value"], quiet["margin"]) = (1.0.into(), (-1.0).into());
+                alarm(result)
             }
         }),
     );
