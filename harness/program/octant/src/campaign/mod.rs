@@ -17,7 +17,7 @@ use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::execute::{ExecuteError, Shard};
 use octant_campaign::journal::{Journal, JournalError, JournalEvent};
-use octant_campaign::judge::looks::note_look;
+use octant_campaign::judge::shown::note_look;
 use octant_campaign::judge::status;
 use octant_campaign::judge::trace::{requirements_of, take_verdicts, with_those_of_scenarios};
 use octant_campaign::plan::looks::LookWay;
@@ -268,8 +268,9 @@ fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict,
     if plan.has_claims() {
         note_look(&plan, folder, &status, "octant campaign trace")?;
     }
-    let mut trace = octant_campaign::judge::trace::trace(&plan, &requirements, folder, status.cases)
-        .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
+    let mut trace =
+        octant_campaign::judge::trace::trace(&plan, &requirements, folder, status.cases)
+            .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
     take_verdicts(&mut trace, &status);
     if let Some(out) = strictdoc {
         if out.exists() {

@@ -9,8 +9,7 @@ use std::path::Path;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/qualification/attacks.md");
 
 fn rows() -> Vec<Row> {
-    let parts =
-        [answers::rows(), sessions::rows(), fmu::rows(), bench::rows(), campaigns::rows()];
+    let parts = [answers::rows(), sessions::rows(), fmu::rows(), bench::rows(), campaigns::rows()];
     parts.concat()
 }
 
