@@ -43,6 +43,7 @@ limit = \"10 nmi\"
 
 const CAMPAIGN: &str = "schema = 1
 title = \"test\"
+seed = 1
 replicates = 3
 [[scenarios]]
 id = \"short\"
@@ -445,7 +446,7 @@ fn nothing_checked_and_nothing_run_is_no_pass() {
 #[test]
 fn a_campaign_that_contradicts_itself_is_refused_with_its_place() {
     let cases = [
-        ("replicates = 3", "replicates = 0", "campaign.toml:3:14: replicates: found 0"),
+        ("replicates = 3", "replicates = 0", "campaign.toml:4:14: replicates: found 0"),
         ("\"60 deg\"]", "\"0 deg\"]", "a second time, expected it once"),
         ("uniform = [10, 1000]", "uniform = [10, 10]", "expected the smaller one first"),
         ("name = \"fault\"", "name = \"latitude\"", "a second time, expected unique names"),

@@ -24,10 +24,14 @@ pub(crate) struct Looked {
 
 impl Looked {
     pub(crate) fn of(replicates: u32, keys: &str) -> Self {
+        Self::asked(replicates, keys, ASKED)
+    }
+
+    fn asked(replicates: u32, keys: &str, requirements: &str) -> Self {
         let bench = Bench::new(&campaign(replicates, keys));
         let scenario = SCENARIO.split("[[faults]]").next().unwrap();
         std::fs::write(bench.at("short.toml"), scenario).unwrap();
-        std::fs::write(bench.at("requirements.toml"), ASKED).unwrap();
+        std::fs::write(bench.at("requirements.toml"), requirements).unwrap();
         let plan = bench.plan();
         let looked = Self { bench, plan };
         looked.octant(&["campaign", "plan", "campaign.toml", "--out", "out"], 0);
@@ -41,7 +45,9 @@ impl Looked {
             let mut result = synthetic(&self.plan, index, case);
             result["summary"]["faults"] = json!([]);
             let checks = result["summary"]["requirements"].as_array_mut().unwrap();
-            checks.retain(|check| check["id"] == "NAV-1");
+            let asked: Vec<&str> =
+                self.plan.requirements.iter().map(|planned| planned.check.id.as_str()).collect();
+            checks.retain(|check| asked.contains(&check["id"].as_str().unwrap()));
             check(&mut result, "NAV-1", if fails.contains(&index) { 11.0 } else { 1.0 }, 10.0);
             put(&self.bench.at("out"), case, &result);
         }
@@ -253,4 +259,38 @@ fn seeds_that_are_given_are_told() {
     given.octant(&["campaign", "report", "out"], 3);
     assert_eq!(given.bench.statistics()["seed"], "seed 4, given in the campaign's file");
     assert!(given.bench.read("report.html").contains("Seed 4, given in the campaign"));
+}
+
+/// All requirements together: draws that pass every check, and the errors of the claims in sum.
+#[test]
+fn requirements_are_stated_together_too() {
+    let two = format!(
+        "{ASKED}[[requirements]]\nid = \"CAL-1\"\ntext = \"No parameter is far off.\"\n\
+         measure = \"calibration.worst_normalized_error\"\nlimit = 50\npass = \"80 %\"\nconfidence = \"95 %\"\n"
+    );
+    let looked = Looked::asked(22, "", &two);
+    looked.fill(0..22, &[3]);
+    let case = &looked.plan.cases[5];
+    let place = looked.bench.at("out");
+    let text = crate::common::results::text(&place, &case.id);
+    let mut result: Value = serde_json::from_str(&text).unwrap();
+    check(&mut result, "CAL-1", 60.0, 50.0);
+    crate::common::results::remove(&place, &case.id);
+    put(&place, case, &result);
+    let said = looked.status(3);
+    assert!(
+        said.contains("NAV-1: inconclusive: 21 of 22") && said.contains("CAL-1: pass: 21 of 22"),
+        "{said}"
+    );
+    // The p at which at most two failures in 22 have a probability of 5 %: 0.740533.
+    assert!(
+        said.contains("all together: 20 of 22 independent draws passed every check of 2 requirements: with 95.00 % confidence a draw passes all of them with a probability of at least 74.05 %"),
+        "{said}"
+    );
+    assert!(said.contains("hold together with a confidence of at least 85.00 %"), "{said}");
+    looked.octant(&["campaign", "report", "out"], 3);
+    let joint = &looked.bench.statistics()["joint"];
+    assert_eq!((&joint["requirements"], &joint["claims"]), (&json!(2), &json!(2)));
+    assert!((joint["together"].as_f64().unwrap() - 0.85).abs() < 1e-12);
+    assert!(looked.bench.read("report.html").contains("All requirements together: 20 of 22"));
 }

@@ -108,7 +108,7 @@ const SHORT: &str = "schema = 1\ntitle = \"short\"\n[imu]\nrate = \"50 Hz\"\n\
     [procedure.calibration]\npositions = \"eight\"\nduration = \"40 min\"\n\
     [procedure.navigation]\nduration = \"10 min\"\n";
 
-const CAMPAIGN: &str = "schema = 1\ntitle = \"both\"\nreplicates = 2\n\
+const CAMPAIGN: &str = "schema = 1\ntitle = \"both\"\nseed = 1\nreplicates = 2\n\
     [[scenarios]]\nid = \"short\"\nfile = \"short.toml\"\n\
     [[factors]]\nname = \"latitude\"\nkey = \"site.latitude\"\nvalues = [\"60 deg\", \"1800 arcmin\"]\n";
 

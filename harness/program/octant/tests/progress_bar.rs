@@ -26,7 +26,7 @@ fn the_stages_of_a_plan_are_shown_on_a_terminal_alone() {
     let folder = tempfile::tempdir().unwrap();
     let quick = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../fixtures/scenarios/quick.toml");
     let campaign = format!(
-        "schema = 1\ntitle = \"long\"\nreplicates = 20000\n[[scenarios]]\nid = \"quick\"\nfile = {quick:?}\n\
+        "schema = 1\ntitle = \"long\"\nseed = 1\nreplicates = 20000\n[[scenarios]]\nid = \"quick\"\nfile = {quick:?}\n\
          [[factors]]\nname = \"latitude\"\nkey = \"site.latitude\"\nunit = \"deg\"\nuniform = [0, 70]\n"
     );
     std::fs::write(folder.path().join("long.toml"), campaign).unwrap();
@@ -41,7 +41,10 @@ fn the_stages_of_a_plan_are_shown_on_a_terminal_alone() {
     // The last thing is an empty line.
     assert!(shown.ends_with(" \r"), "{shown:?}");
     let (said, error) = ended(octant_in(folder.path(), &plan("silent")), 0);
-    assert_eq!((said.as_str(), error.as_str()), ("20000 cases\nsilent/plan.json\n", ""));
+    assert_eq!(
+        (said.as_str(), error.as_str()),
+        ("20000 cases\nseed 1, given in the campaign's file\nsilent/plan.json\n", "")
+    );
     let bytes = |out: &str| std::fs::read(folder.path().join(out).join("plan.json")).unwrap();
     assert!(bytes("shown") == bytes("silent"));
 }

@@ -207,6 +207,11 @@ impl Journal {
             path: path.clone(),
             source: error.into(),
         })?;
+        std::fs::create_dir_all(folder).map_err(|source| JournalError::System {
+            action: "create",
+            path: folder.to_owned(),
+            source,
+        })?;
         let begun = Instant::now();
         let mut lines = loop {
             // Another process may write at the same time, for as long as it takes to write a line.
@@ -284,21 +289,20 @@ impl Journal {
         found
     }
 
-    /// Describes what was done that a claim has to be read with.
+    /// Describes what was done that a claim has to be read with; `results` is the number of results now.
     #[must_use]
-    pub fn doubts(&self) -> Vec<String> {
+    pub fn doubts(&self, results: usize) -> Vec<String> {
         let mut opened = 0;
         let mut found = Vec::new();
-        if !self.is_there {
-            found.push(format!(
-                "{FILE_NAME} is missing: nobody knows how often the results were looked at"
-            ));
+        // The same words as those of the entry that begins one.
+        if !self.is_there && results > 0 {
+            found.push(unknown_before(results));
         }
         for entry in &self.entries {
             match &entry.event {
-                JournalEvent::Begun { results, .. } if *results > 0 => found.push(format!(
-                    "{FILE_NAME} begins with {results} results there: nobody knows how often they were looked at before"
-                )),
+                JournalEvent::Begun { results, .. } if *results > 0 => {
+                    found.push(unknown_before(*results));
+                }
                 JournalEvent::Opened { .. } => opened += 1,
                 _ => {}
             }
@@ -367,6 +371,12 @@ impl JournalEvent {
             }
         }
     }
+}
+
+fn unknown_before(results: usize) -> String {
+    format!(
+        "{FILE_NAME} begins with {results} results there: nobody knows how often they were looked at before"
+    )
 }
 
 fn is_mine(line: &str) -> Result<(), String> {

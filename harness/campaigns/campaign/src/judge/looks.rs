@@ -4,8 +4,7 @@
 //! The first look fixes the draws of a claim, unless the campaign is looked at openly: those that are added later are
 //! nominal. Before a look is due, progress is shown and no outcome.
 
-use super::status::{CampaignStatus, RequirementStatus};
-use crate::journal::{Journal, JournalError, JournalEvent};
+use crate::journal::Journal;
 use crate::plan::looks::{LookWay, at_each_of};
 use crate::plan::{Case, Plan};
 use octant_statistics::cluster::{DrawCounts, RowResult};
@@ -17,7 +16,6 @@ use octant_verdict::Verdict;
 use octant_verdict::requirement::EnsembleRequirement;
 use octant_verdict::trace::{ClaimBounds, ONCE, VerdictCounts, judge, judge_by};
 use serde::Serialize;
-use std::path::Path;
 
 /// Bounds of data that is looked at openly.
 const OPEN: ClaimBounds = ClaimBounds {
@@ -114,8 +112,8 @@ impl LookState {
 
     /// State of a part of a campaign, whose results alone make no claim: they are judged as if they were looked at once.
     #[must_use]
-    pub fn of_part(self, cases: usize) -> Self {
-        let is_due = matches!(self.kind, Kind::Open);
+    pub fn of_part(self, cases: usize, has_claims: bool) -> Self {
+        let is_due = !has_claims || matches!(self.kind, Kind::Open);
         Self { claim_cases: cases, nominal_cases: 0, is_due, kind: Kind::Once, ..self }
     }
 
@@ -297,60 +295,6 @@ impl LookState {
     pub fn is_open(&self) -> bool {
         self.kind == Kind::Open
     }
-}
-
-impl CampaignStatus {
-    /// Returns the state as it may be shown: before a look is due, progress and errors of the bench without any outcome.
-    #[must_use]
-    pub fn shown(self) -> Self {
-        if self.looks.is_due {
-            return self;
-        }
-        let error = Verdict::Error.name();
-        let errors = self.verdicts.get(error).copied();
-        let waits = "not looked at yet".to_owned();
-        let hidden = |status: RequirementStatus| RequirementStatus {
-            verdict: Verdict::Inconclusive,
-            reason: waits.clone(),
-            counts: VerdictCounts::default(),
-            draws: DrawCounts::default(),
-            needed: None,
-            bound: None,
-            ..status
-        };
-        Self {
-            verdicts: errors.map(|errors| (error, errors)).into_iter().collect(),
-            besides: if errors.is_some() { Verdict::Error } else { Verdict::Inconclusive },
-            requirements: (self.requirements.into_iter())
-                .map(|(id, status)| (id, hidden(status)))
-                .collect(),
-            joint: None,
-            bad: (self.bad.into_iter()).filter(|bad| bad.verdict == Verdict::Error).collect(),
-            ..self
-        }
-    }
-}
-
-/// Notes in the journal of a folder that outcomes are shown, unless the last look showed the same.
-///
-/// # Errors
-/// If the journal can't be written: then nothing may be shown.
-pub fn note_look(
-    plan: &Plan,
-    folder: &Path,
-    status: &CampaignStatus,
-    by: &str,
-) -> Result<(), JournalError> {
-    let results = status.cases - status.open;
-    let journal = Journal::read(folder)?;
-    if journal.last_look() == Some((plan.id.as_str(), results)) {
-        return Ok(());
-    }
-    if !journal.is_there {
-        Journal::append(folder, JournalEvent::Begun { results, plan: plan.in_journal() })?;
-    }
-    let (plan, cases, by) = (plan.id.clone(), plan.cases.len(), by.to_owned());
-    Journal::append(folder, JournalEvent::Look { plan, by, cases, results })
 }
 
 /// Draws of a requirement, judged.

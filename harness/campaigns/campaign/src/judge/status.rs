@@ -2,6 +2,7 @@
 
 use super::case_states::{CaseState, checked, each_state};
 use super::independence::{self, Shown};
+pub use super::joint::JointStatement;
 use super::looks::{JudgedDraws, LookState};
 use super::stop::{self, StopDecision};
 use crate::execute::case::ResultError;
@@ -92,52 +93,6 @@ pub struct RequirementStatus {
     pub bound: Option<f64>,
 }
 
-/// Statement on all requirements together, beside those on each.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct JointStatement {
-    /// Number of requirements.
-    pub requirements: usize,
-    /// Draws that pass if all of their checks of all requirements do.
-    pub draws: DrawCounts,
-    /// Confidence of the bound, one-sided: the largest that a requirement asks for.
-    pub confidence: f64,
-    /// Lower bound of the probability that a draw passes all of its checks, by the way in which the campaign is looked at;
-    /// null without a result.
-    pub lower_bound: Option<f64>,
-    /// Claims on single requirements that ask for a probability.
-    pub claims: usize,
-    /// Confidence with which all of these claims hold together, at least (Bonferroni).
-    pub together: f64,
-}
-
-impl JointStatement {
-    /// Renders it as sentences.
-    #[must_use]
-    pub fn in_words(&self) -> String {
-        let Self { requirements, draws, confidence, lower_bound, claims, together } = self;
-        let mut text = match lower_bound {
-            None => "no draw has a result".to_owned(),
-            Some(lower) => format!(
-                "{} of {} independent draws passed every check of {requirements} requirement{}: with {:.2} % confidence \
-                 a draw passes all of them with a probability of at least {:.2} %",
-                draws.passed,
-                draws.known(),
-                if *requirements == 1 { "" } else { "s" },
-                100.0 * confidence,
-                (1e4 * lower).floor() / 1e2
-            ),
-        };
-        if *claims > 1 {
-            _ = write!(
-                text,
-                "; the {claims} claims on single requirements hold together with a confidence of at least {:.2} %",
-                100.0 * together
-            );
-        }
-        text
-    }
-}
-
 /// Case that isn't a pass.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Bad {
@@ -197,7 +152,7 @@ pub fn of_results(
     let has = |case: &Case| results.has(&case.id);
     let mut looks = LookState::of(plan, &results.journal, end, is_decided, has);
     if shard != Shard::WHOLE {
-        looks = looks.of_part(plan.cases.len());
+        looks = looks.of_part(plan.cases.len(), plan.has_claims());
     }
     let mut status = CampaignStatus {
         title: plan.title.clone(),
@@ -456,111 +411,5 @@ impl CampaignStatus {
         let least = if unfinished { Verdict::Inconclusive } else { Verdict::Pass };
         let requirements = self.requirements.values().map(|requirement| requirement.verdict);
         requirements.fold(self.besides.worst(least), Verdict::worst)
-    }
-
-    /// Describes the parts of the design without effect.
-    #[must_use]
-    pub fn idle_in_words(&self) -> Vec<String> {
-        let idle = self.idle_factors.iter().map(|factor| {
-            format!(
-                "factor {factor} changes nothing: cases that differ in it have the same streams"
-            )
-        });
-        let cases: usize = self.repeated.iter().map(Vec::len).sum();
-        let repeated = (cases > 0).then(|| {
-            let streams = self.repeated.len();
-            format!(
-                "{cases} cases came to {streams} stream{}: cases of the same stream are one run and count \
-                 once, the first are {}",
-                if streams == 1 { "" } else { "s" },
-                self.repeated.iter().flatten().take(3).cloned().collect::<Vec<_>>().join(", ")
-            )
-        });
-        idle.chain(repeated).collect()
-    }
-
-    /// Renders the state as text.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let counts = |counts: &BTreeMap<&'static str, usize>| {
-            let one = |verdict: &Verdict| {
-                let count = counts.get(verdict.name())?;
-                Some(format!("{count} {}", verdict.name()))
-            };
-            Verdict::ALL.iter().filter_map(one).collect::<Vec<_>>().join(", ")
-        };
-        let mut text = format!(
-            "{}: {}\n  {} of {} cases have run: {}\n",
-            self.title,
-            self.verdict().name(),
-            self.cases - self.open,
-            self.cases,
-            if self.looks.is_due { counts(&self.verdicts) } else { "not looked at yet".to_owned() }
-        );
-        _ = writeln!(text, "  {}", self.looks.in_words());
-        let many = |count: usize| if count == 1 { "" } else { "s" };
-        _ = writeln!(text, "  {} independent draw{}", self.draws, many(self.draws));
-        for found in self.idle_in_words() {
-            _ = writeln!(text, "  {found}");
-        }
-        for (id, requirement) in &self.requirements {
-            _ = writeln!(text, "  {id}: {}: {}", requirement.verdict.name(), requirement.reason);
-            match requirement.needed {
-                None | Some(Needed::Runs(0)) => {}
-                Some(Needed::Runs(runs)) if !self.looks.is_open() => {
-                    let plan = requirement.draws.known() + runs;
-                    _ = writeln!(
-                        text,
-                        "    draws that are added to this plan don't count; a new plan with {plan} draws shows it with as \
-                         many failures"
-                    );
-                }
-                Some(Needed::Runs(runs)) => {
-                    _ = writeln!(
-                        text,
-                        "    {runs} more independent draws would show it, if all of them pass"
-                    );
-                }
-                Some(Needed::CannotBeMet) => {
-                    text += "    no number of further draws can show it\n";
-                }
-            }
-        }
-        if let Some(joint) = self.joint.as_ref().filter(|joint| joint.requirements > 1) {
-            _ = writeln!(text, "  all together: {}", joint.in_words());
-        }
-        if !self.not_by_test.is_empty() {
-            let ids = self.not_by_test.join(", ");
-            _ = writeln!(text, "  not verified by runs: {ids}");
-        }
-        if self.requirements.is_empty() {
-            text += "  no requirement checked\n";
-        }
-        for doubt in &self.doubts {
-            _ = writeln!(text, "  requirements may be missing: {doubt}");
-        }
-        for told in &self.numerics {
-            _ = writeln!(text, "  {told}");
-        }
-        if let Some(stopped) = &self.stopped {
-            _ = writeln!(text, "  {stopped}");
-        }
-        for Bad { case, verdict, reason } in &self.bad {
-            _ = writeln!(text, "  case {case}: {}: {reason}", verdict.name());
-        }
-        let bad: usize = [Verdict::Fail, Verdict::Error]
-            .iter()
-            .filter_map(|verdict| self.verdicts.get(verdict.name()))
-            .sum();
-        if bad > self.bad.len() {
-            _ = writeln!(text, "  and {} more", bad - self.bad.len());
-        }
-        for case in &self.differing {
-            _ = writeln!(
-                text,
-                "  case {case} came to two results: this is no deterministic program"
-            );
-        }
-        text
     }
 }

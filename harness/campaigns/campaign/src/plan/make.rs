@@ -2,11 +2,13 @@
 
 use super::case_id::{CaseId, NoCaseId};
 use super::draw::{At, Draws};
+use super::equal_values::equal_values;
 use super::factor_values::FactorValue;
-use super::looks::{Looks, seed_of};
+use super::looks::Looks;
 use super::possible::{key_of, why_not};
 use super::progress::{PlanStage, Tell, told};
 use super::requirements::{self, Planned};
+use super::seed::seed_of;
 use super::shared::{SharedText, SharedTexts};
 use super::shared_cases::SharedParts;
 use crate::plan::{CASES_MAX, Case, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system};
@@ -16,7 +18,7 @@ use octant_scenario::campaign::{Campaign, FactorSpec, Levels, Member};
 use octant_verdict::verdict::LimitCheck;
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Returns the level of a factor in a cell of the grid; the last factor runs fastest.
@@ -271,58 +273,6 @@ fn same(cases: &[Case]) -> Option<[&Case; 2]> {
     let pairs = order.windows(2).filter(|pair| id(&pair[0]) == id(&pair[1]));
     let first = pairs.min_by_key(|pair| pair[1])?;
     Some([cases.get(first[0] as usize)?, cases.get(first[1] as usize)?])
-}
-
-/// Finds two values of a grid that are equal in another spelling: they would be the same runs under
-/// two names.
-fn equal_values(factor: &FactorSpec) -> Option<String> {
-    let spelled: Vec<(String, String)> = match &factor.levels {
-        Levels::Values { values, drawn: false, .. } => {
-            values.iter().map(|value| (value.clone(), meaning(value))).collect()
-        }
-        Levels::Faults { lists, drawn: false, .. } => (lists.iter())
-            .map(|list| {
-                let mut sorted = list.clone();
-                sorted.sort();
-                sorted.dedup();
-                (format!("{list:?}"), format!("{sorted:?}"))
-            })
-            .collect(),
-        _ => return None,
-    };
-    let mut seen: HashMap<&str, &str> = HashMap::new();
-    spelled.iter().find_map(|(value, meaning)| {
-        let other = seen.insert(meaning, value)?;
-        Some(format!(
-            "factor {:?} has the values {other} and {value}, which are the same: expected values that differ",
-            factor.name
-        ))
-    })
-}
-
-/// Normalises a TOML value: numbers without their spelling, quantities in SI.
-fn meaning(value: &str) -> String {
-    fn of(value: &toml::Value) -> String {
-        match value {
-            toml::Value::Integer(number) => format!("{:?}", *number as f64 + 0.0),
-            toml::Value::Float(number) => format!("{:?}", number + 0.0),
-            toml::Value::String(text) => match octant_scenario::quantity_of(text) {
-                // Twelve decimals hide the rounding of the conversion: 1 deg equals 60 arcmin.
-                Ok(quantity) => format!("{:.12e} in SI", quantity.si + 0.0),
-                Err(_) => format!("{:?}", text.trim()),
-            },
-            toml::Value::Array(all) => format!("{:?}", all.iter().map(of).collect::<Vec<_>>()),
-            toml::Value::Table(all) => {
-                let all: BTreeMap<&String, String> = all.iter().map(|(k, v)| (k, of(v))).collect();
-                format!("{all:?}")
-            }
-            toml::Value::Boolean(value) => value.to_string(),
-            toml::Value::Datetime(value) => value.to_string(),
-        }
-    }
-    let parsed = format!("value = {value}").parse::<toml::Table>();
-    let parsed = parsed.ok().and_then(|table| table.get("value").map(of));
-    parsed.unwrap_or_else(|| value.trim().to_owned())
 }
 
 fn absolute(path: &Path) -> Result<PathBuf, PlanError> {

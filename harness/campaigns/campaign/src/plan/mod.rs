@@ -5,14 +5,17 @@
 
 pub mod case_id;
 mod draw;
+mod equal_values;
 mod error;
 pub mod factor_values;
+mod looked;
 pub mod looks;
 pub(crate) mod make;
 pub mod planned;
 mod possible;
 pub mod progress;
 pub mod requirements;
+mod seed;
 mod set_up;
 pub(crate) mod shard;
 pub mod shared;

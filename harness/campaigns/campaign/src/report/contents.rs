@@ -150,14 +150,14 @@ fn journal_findings(
     plan: &Plan,
     journal: &Journal,
     taken_back: u64,
-    first_result: Option<SystemTime>,
+    (results, first_result): (usize, Option<SystemTime>),
 ) -> Vec<String> {
     let mut found = match journal.is_there {
         true => journal.contradictions(&plan.id, taken_back, first_result),
         false => Vec::new(),
     };
     if plan.has_claims() {
-        found.extend(journal.doubts());
+        found.extend(journal.doubts(results));
     }
     found
 }
@@ -222,7 +222,7 @@ impl<'a> CampaignReport<'a> {
             wrong.push(format!("the self-test of the program came to {}", test.verdict.name()));
         }
         wrong.extend(makers::wrong(&made_by, selftest.as_ref()));
-        wrong.extend(journal_findings(plan, &journal, taken_back, run_between[0]));
+        wrong.extend(journal_findings(plan, &journal, taken_back, (run, run_between[0])));
         let mut of_combinations: Vec<CombinationFigures> = combinations
             .iter()
             .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
@@ -285,6 +285,16 @@ impl<'a> CampaignReport<'a> {
     /// If the temporary files that hold them could not be read.
     pub fn check(&self) -> Result<(), ReportError> {
         check(&self.rows)
+    }
+
+    /// Reads the journal of the folder again, after a look was noted.
+    ///
+    /// # Errors
+    /// If it can't be read.
+    pub fn reread_journal(&mut self, folder: &Path) -> Result<(), ReportError> {
+        let journal = Journal::read(folder).map_err(crate::execute::case::ResultError::from)?;
+        self.journal = journal.entries;
+        Ok(())
     }
 
     /// Chooses units of errors on the page, in place of the scenarios'. Files for machines keep theirs.

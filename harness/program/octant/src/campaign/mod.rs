@@ -17,7 +17,7 @@ use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::execute::{ExecuteError, Shard};
 use octant_campaign::journal::{Journal, JournalError, JournalEvent};
-use octant_campaign::judge::looks::note_look;
+use octant_campaign::judge::shown::note_look;
 use octant_campaign::judge::status;
 use octant_campaign::judge::trace::{requirements_of, take_verdicts, with_those_of_scenarios};
 use octant_campaign::plan::looks::LookWay;

@@ -7,9 +7,7 @@ use crate::signing::signing_key;
 use crate::terminal::{print, tell_account, write};
 use clap::Args;
 use octant_base::display::UnitChoice;
-use octant_campaign::execute::Shard;
-use octant_campaign::judge::looks::note_look;
-use octant_campaign::judge::status;
+use octant_campaign::judge::shown::note_look;
 use octant_campaign::report::file_names::PAGE;
 use octant_campaign::report::{CampaignReport, ReportError};
 use octant_campaign_pages::{campaign, evidence};
@@ -40,11 +38,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let plan = read(folder)?;
     // An invalid key is reported before anything is written.
     let key = if out.is_none() { signing_key()? } else { None };
-    if plan.has_claims() || out.is_none() {
-        let status = status::of(&plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
-        note_look(&plan, folder, &status, "octant campaign report")?;
-    }
     let mut report = CampaignReport::of(&plan, folder)?;
+    if plan.has_claims() || out.is_none() {
+        note_look(&plan, folder, &report.status, "octant campaign report")?;
+        report.reread_journal(folder)?;
+    }
     if let Some(units) = *units {
         report.show_in(units)?;
     }

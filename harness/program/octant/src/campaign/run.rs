@@ -14,7 +14,7 @@ use octant_campaign::execute::selection::CaseSelection;
 use octant_campaign::execute::{
     CaseDone, ExecuteError, ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute,
 };
-use octant_campaign::judge::looks::note_look;
+use octant_campaign::judge::shown::note_look;
 use octant_campaign::judge::status;
 use octant_campaign::judge::stop::StopDecision;
 use octant_campaign::merge;
@@ -153,7 +153,13 @@ fn run(
     };
     // A case with two results is more than a verdict.
     let is_complete = status.open == 0 && status.differing.is_empty();
-    Ok(if *any_verdict && is_complete { Verdict::Pass } else { status.verdict() })
+    // Before a look nothing is said of a part, and its end says nothing either.
+    let is_unseen = shard != Shard::WHOLE && !status.looks.is_due;
+    Ok(match status.verdict() {
+        _ if *any_verdict && is_complete => Verdict::Pass,
+        Verdict::Inconclusive if is_complete && is_unseen => Verdict::None,
+        verdict => verdict,
+    })
 }
 
 /// Shows an event of an execution on the bar, and failures above it.

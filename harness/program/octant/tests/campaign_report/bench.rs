@@ -53,6 +53,7 @@ verification = \"inspection\"
 /// 2 latitudes of 40 instruments; the names need escaping on a page.
 pub(crate) const CAMPAIGN: &str = "schema = 1
 title = \"T<script>alert(1)</script> & co\"
+seed = 1
 replicates = 40
 requirements = \"requirements.toml\"
 [[scenarios]]

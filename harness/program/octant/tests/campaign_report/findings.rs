@@ -47,7 +47,7 @@ fn names_are_escaped() {
     assert!(output.status.code() == Some(2) && said.contains(plan.cases[7].id.as_str()), "{said}");
     let xml = bench.read("junit.xml");
     assert!(xml.contains("T&lt;script"), "the title is escaped");
-    assert_eq!(xml.matches("name=\"verifies\"").count(), 2 * 80 + 2);
+    assert_eq!(xml.matches("[[PROPERTY|verifies=").count(), 2 * 80 + 2);
     assert!(!xml.contains("<failure") && !xml.contains("<error"));
 }
 

@@ -175,11 +175,12 @@ fn asks_for_less_after_the_look() -> (i32, String) {
 }
 
 fn adds_combinations_to_draws_that_were_seen() -> (i32, String) {
-    let looked = Looked::of(22, "seed = 1\n");
+    let factor = "seed = 1\nfactors = [{ name = \"latitude\", key = \"site.latitude\", values = [\"0 deg\"] }]\n";
+    let looked = Looked::of(22, factor);
     looked.fill(0..22, &[3]);
     looked.status(3);
     edit(&looked.bench.at("campaign.toml"), |text| {
-        text + "[[factors]]\nname = \"latitude\"\nkey = \"site.latitude\"\nvalues = [\"0 deg\", \"60 deg\"]\n"
+        text.replace("[\"0 deg\"]", "[\"0 deg\", \"60 deg\"]")
     });
     says(&looked, &["campaign", "plan", "campaign.toml", "--out", "out", "--extend"])
 }
@@ -370,7 +371,7 @@ const ATTACKS: [Attack; 25] = [
     Attack {
         group: "results of a campaign",
         about: "stores the result of another draw for the one that fails",
-        ends: Ends { status: Verdict::Error.exit_code(), because: "its case_blake3 is" },
+        ends: Ends { status: Verdict::Error.exit_code(), because: "its case_blake3" },
         tries: content::copies_a_result_of_another_draw,
     },
     Attack {
