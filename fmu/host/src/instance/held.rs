@@ -30,7 +30,9 @@ impl Held {
     /// Returns whether the FMU has these numbers.
     #[inline]
     pub(super) fn is(&mut self, place: usize, group: &VariableGroup, values: &[f64]) -> bool {
+        // Once an exchange has set its groups none of them is looked up again.
         if !self.learned.is_empty()
+            && !matches!(self.groups.get(place), Some(Some(_)))
             && let Some(at) = self.learned.iter().position(|(known, _)| known == group)
         {
             let (_, held) = self.learned.swap_remove(at);

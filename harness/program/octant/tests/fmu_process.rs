@@ -264,7 +264,8 @@ fn a_hang_ends_at_the_limit() {
     for what in [HANG, BUSY] {
         assert_eq!(
             meet(STEP, what, &options),
-            "the process of trouble_fmi2.fmu gave no answer to fmi2DoStep for 5 s, and was ended"
+            "the process of trouble_fmi2.fmu gave no answer to fmi2DoStep for 5 s, and was ended; \
+             --time-limit, or time_limit in a scenario, sets another limit"
         );
     }
     let options = OpenOptions { start_limit: Duration::from_secs(5), ..apart() };

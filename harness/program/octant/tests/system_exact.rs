@@ -112,3 +112,23 @@ fn a_late_time_event_is_a_warning_of_the_system() {
     let found = summary(&out)["warnings"].to_string();
     assert!(found.contains("timed: the time event at 0.55 s is handled at 0.6"), "{found}");
 }
+
+#[test]
+fn a_package_in_a_package_runs_as_the_system_that_it_is() {
+    let inner = chain();
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    foreign::pack(&mut archive, inner.path(), "");
+    let packed = archive.finish().unwrap().into_inner();
+    let part = "<Component name=\"part\" type=\"application/x-ssp-package\" source=\"resources/chain.ssp\"/>";
+    let outer = system(&[], part, "", "");
+    std::fs::write(outer.path().join("resources/chain.ssp"), packed).unwrap();
+    let runs = [(inner.path(), "a"), (outer.path(), "part.a")].map(|(folder, fmu)| {
+        let out = folder.join("run");
+        let set = format!("{fmu}.u64=18446744073709551613");
+        let ran = run(folder, &out, &["--set", &set, "--stop", "0.3 s", "--csv", "--in-process"]);
+        assert_eq!(ran.status.code(), Some(0), "{}", error(&ran));
+        let text = std::fs::read_to_string(out.join("values.csv")).unwrap();
+        text.lines().skip(1).map(str::to_owned).collect::<Vec<_>>()
+    });
+    assert_eq!(runs[0], runs[1]);
+}

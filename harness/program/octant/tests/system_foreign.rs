@@ -78,13 +78,13 @@ pub(crate) fn summary(folder: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }
 
-/// Reads the rows of `values.csv`: names and numbers.
+/// Reads the rows of `values.csv`: names and numbers; a text is none.
 fn rows(folder: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let mut reader = csv::Reader::from_path(folder.join("values.csv")).unwrap();
     let names = reader.headers().unwrap().iter().map(str::to_owned).collect();
     let rows = reader
         .records()
-        .map(|row| row.unwrap().iter().map(|number| number.parse().unwrap()).collect())
+        .map(|row| row.unwrap().iter().map(|field| field.parse().unwrap_or(f64::NAN)).collect())
         .collect();
     (names, rows)
 }

@@ -281,7 +281,7 @@ fn what_is_wrong_is_told_with_file_line_and_element() {
         (two("").replace("kind=\"input\"", "kind=\"inout\""), "the kind \"inout\" was found"),
         (
             two("").replace("source=\"resources/a.fmu\"", "type=\"application/x-ssp-package\""),
-            "put the system into this file",
+            "it has no source: there is no system to be run",
         ),
         (
             two("<Annotations/>")
@@ -373,6 +373,9 @@ fn what_other_tools_write_is_read_with_a_warning_each() {
     }
 }
 
+/// An output without a unit.
+const PLAIN: &str = r#"<Connector name="y" kind="output"/>"#;
+
 #[test]
 fn the_step_of_omsimulator_is_read() {
     let of = |master: &str, around: &str| {
@@ -385,7 +388,7 @@ fn the_step_of_omsimulator_is_read() {
                <Annotations><ssc:Annotation type="org.openmodelica">{open}
                <oms:SimulationInformation>{master}</oms:SimulationInformation>{close}
                </ssc:Annotation></Annotations></System>"#,
-            component("a", OUT, "")
+            component("a", PLAIN, "")
         );
         let (structure, _) = read(&structure, &[]).unwrap();
         (structure.others_step_s, structure.warnings)
@@ -407,8 +410,10 @@ fn a_prefix_that_is_not_declared_is_the_usual_one() {
         <ssv:Parameters><ssv:Parameter name="p"><ssv:Real value="2"/></ssv:Parameter></ssv:Parameters>
         </ssv:ParameterSet>"#;
     let bound = r#"<ParameterBindings><ParameterBinding source="p.ssv"/></ParameterBindings>"#;
-    let structure =
-        format!(r#"<System name="s"><Elements>{}</Elements></System>"#, component("a", OUT, bound));
+    let structure = format!(
+        r#"<System name="s"><Elements>{}</Elements></System>"#,
+        component("a", PLAIN, bound)
+    );
     let (structure, flat) = read(&structure, &[("p.ssv", set)]).unwrap();
     assert_eq!(flat.components[0].parameters[0].value.numbers, [2.0]);
     assert_eq!(structure.warnings.len(), 1);
@@ -429,7 +434,7 @@ fn units_of_the_structure_are_those_of_its_inline_parameters() {
     let structure = format!(
         r#"<System name="s"><Elements>{}</Elements></System>
            <Units><ssc:Unit name="furlong"><ssc:BaseUnit m="1" factor="201.168"/></ssc:Unit></Units>"#,
-        component("a", OUT, inline)
+        component("a", PLAIN, inline)
     );
     let (structure, flat) = read(&structure, &[]).unwrap();
     let unit = flat.components[0].parameters[0].value.unit.clone().unwrap();
