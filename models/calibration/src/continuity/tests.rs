@@ -166,7 +166,7 @@ fn gimbals(base: Base, starts: [f64; 2], angles: [f64; 2], sample_ms: usize) -> 
         }
         if (k + 1).is_multiple_of(100) {
             let velocity = Vector3::zeros();
-            let _ = continuity.add(&Block { turn, velocity, gimbal, beyond: None });
+            let _ = continuity.add(&Block { turn, velocity, gimbal, rests: false, beyond: None });
             turn = Vector3::zeros();
             if k > 3000 {
                 let [x, y, z, ..] = continuity.filtered(&continuity.ring);
