@@ -1369,8 +1369,24 @@ class ProcedureAlignment(Section):
     """The velocity error itself, north, east, down. Takes an array of 3, each a velocity such as "1 mm/s". Left
     out: drawn from velocity."""
 
+class ProcedureCalibrationAidingRest(Section):
+    """Case that doesn't turn: at a stop neither do the gimbals, and a move turns the body about one axis alone.
+    For motion.kind = "static". Takes a table with wander, range, jitter. Left out: the velocity alone is
+    known to be zero."""
+
+    jitter: str
+    """White noise of the case's attitude about each axis, one standard deviation: people, machines. Takes an
+    angle such as "40 arcsec". Default: "0.5 arcsec"."""
+    range: str
+    """Turn of the case since the start, beyond what its uncertainty explains, that contradicts a case at rest.
+    Takes an angle such as "40 arcsec". Default: "10 arcsec"."""
+    wander: str
+    """Random walk of the case about each axis: a floor that settles, a pillar in the sun, a quay. Takes an angle
+    random walk such as "0.0007 deg/sqrt(h)". Default: "0.2 arcsec/sqrt(h)"."""
+
 class ProcedureCalibrationAiding(Section):
-    """The reference that the filter measures against. Takes a table with reference, period, sway, sigma, noise."""
+    """The reference that the filter measures against. Takes a table with reference, period, sway, sigma, noise,
+    rest."""
 
     noise: str
     """Standard deviation of the white noise that the reference really has. Takes a velocity such as "1 mm/s" or
@@ -1380,6 +1396,13 @@ class ProcedureCalibrationAiding(Section):
     reference: Literal["zero-velocity", "velocity", "dock-position"]
     """What is measured. Takes one of "zero-velocity", "velocity", "dock-position". Default: static: "zero-
     velocity"; dockside: "dock-position"."""
+    @property
+    def rest(self) -> ProcedureCalibrationAidingRest:
+        """Case that doesn't turn: at a stop neither do the gimbals, and a move turns the body about one axis
+        alone. For motion.kind = "static". Takes a table with wander, range, jitter. Left out: the velocity
+        alone is known to be zero."""
+    @rest.setter
+    def rest(self, value: ProcedureCalibrationAidingRest | Mapping[str, Any]) -> None: ...
     sigma: str
     """Standard deviation of each axis, as the filter believes it. Takes a velocity such as "1 mm/s" or a length
     such as "0.15 m". Default: velocities: "1 mm/s"; dock-position: "0.15 m"; with sway = "coloured": "0.01
@@ -1757,7 +1780,7 @@ class ProcedureCalibration(Section):
     @property
     def aiding(self) -> ProcedureCalibrationAiding:
         """The reference that the filter measures against. Takes a table with reference, period, sway, sigma,
-        noise."""
+        noise, rest."""
     @aiding.setter
     def aiding(self, value: ProcedureCalibrationAiding | Mapping[str, Any]) -> None: ...
     duration: str
@@ -1817,8 +1840,12 @@ class ProcedureCalibration(Section):
 
 class ProcedureHeadingTest(Section):
     """A test of the heading as type tests of marine instruments have it, over one run-up or several. Takes a
-    table with test, run_ups, off, resolution. Left out: the heading isn't tested."""
+    table with test, run_ups, off, azimuths, resolution. Left out: the heading isn't tested."""
 
+    azimuths: Sequence[str]
+    """Angle by which the table has turned the unit in each run-up of a solution: the true heading is turned as
+    far, such as ["0 deg", "90 deg"]. turntable.drive turns it there before the unit is switched on. Takes a
+    list of names. Left out: the unit stands at zero."""
     off: str
     """How long the unit is without power between two run-ups. Takes a time such as "12 h". Default: "12 h"."""
     resolution: str
@@ -1886,7 +1913,7 @@ class Procedure(Section):
     @property
     def heading_test(self) -> ProcedureHeadingTest:
         """A test of the heading as type tests of marine instruments have it, over one run-up or several. Takes a
-        table with test, run_ups, off, resolution. Left out: the heading isn't tested."""
+        table with test, run_ups, off, azimuths, resolution. Left out: the heading isn't tested."""
     @heading_test.setter
     def heading_test(self, value: ProcedureHeadingTest | Mapping[str, Any]) -> None: ...
     @property
@@ -2520,9 +2547,11 @@ class SourceReference(Section):
     """Velocity up, in place of down. Takes a column number from 1, or a column's name. Left out: down is given."""
 
 class SourceSolution(Section):
-    """How the solution of source.uri is read. Takes a table with skip, format, talker, points, heading_time,
-    heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude, longitude,
-    height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Default: solution: the defaults of
+    """How the solution of source.uri is read. Takes a table with skip, switched_on, silence, rehearsal, format,
+    talker, points, heading_time, heading_rate, heading_start, heading_delay, heading_delay_uncertainty,
+    delimiter, skip_lines, comment, time_column, time_unit, latitude, longitude, height, north, east, heading,
+    pitch, roll, sigma_north, sigma_east, sigma_velocity_north, sigma_velocity_east, sigma_roll, sigma_pitch,
+    sigma_heading, quality, quality_left_out, angle_unit, velocity_unit. Default: solution: the defaults of
     its keys."""
 
     angle_unit: Literal["deg", "rad"]
@@ -2541,6 +2570,12 @@ class SourceSolution(Section):
     heading: int | str
     """Heading from north by east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
+    heading_delay: str
+    """NMEA: time from a time of day to the measurement of the first heading behind it that has no time;
+    negative: it was measured before. Takes a time such as "12 h". Left out: not known: the time to the next
+    one is in doubt."""
+    heading_delay_uncertainty: str
+    """NMEA: how far heading_delay may be off, 95 %. Takes a time such as "12 h". Default: "0 s"."""
     heading_rate: str
     """NMEA: even rate of headings in a file without any time. Sentences that are missing can't be seen. Takes a
     frequency such as "200 Hz". Left out: they have times."""
@@ -2568,14 +2603,50 @@ class SourceSolution(Section):
     points: Literal["positions", "headings"]
     """NMEA: sentences that make a point each. Takes one of "positions", "headings". Default: headings, where the
     reference is true_heading or the file has no position; else positions."""
+    quality: int | str
+    """Quality of a row, in words or numbers of its own, which the account counts. Takes a column number from 1,
+    or a column's name. Left out: not stated."""
+    quality_left_out: Sequence[str]
+    """Qualities whose rows are left out, such as ["0", "no fix"]. Takes a list of names. Default: []."""
+    rehearsal: bool
+    """The time of a run with a port is that of the TAG blocks that a simulated unit sends. Always inconclusive.
+    Takes true or false. Default: false."""
     roll: int | str
     """Roll, positive with the starboard side down. Takes a column number from 1, or a column's name. Default:
     the name of Octant's exports, where the header has it."""
+    sigma_east: int | str
+    """Standard deviation of the position to the east, m. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_heading: int | str
+    """Standard deviation of the heading, in angle_unit. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_north: int | str
+    """Standard deviation of the position to the north, m. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_pitch: int | str
+    """Standard deviation of the pitch, in angle_unit. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_roll: int | str
+    """Standard deviation of the roll, in angle_unit. Takes a column number from 1, or a column's name. Left out:
+    not stated."""
+    sigma_velocity_east: int | str
+    """Standard deviation of the velocity to the east, in velocity_unit. Takes a column number from 1, or a
+    column's name. Left out: not stated."""
+    sigma_velocity_north: int | str
+    """Standard deviation of the velocity to the north, in velocity_unit. Takes a column number from 1, or a
+    column's name. Left out: not stated."""
+    silence: str
+    """Of a port: time without a byte after which the run ends, and is inconclusive. 0 s: as long as it takes.
+    Takes a time such as "12 h". Default: "10 s"."""
     skip: str
     """Time at its beginning that isn't scored, such as an alignment. Takes a time such as "12 h". Default: "0
     s"."""
     skip_lines: int
     """Columns of text: lines to skip at the start. Takes a whole number from 0 to 1000000. Default: 0."""
+    switched_on: Sequence[str]
+    """Heading test: times at which the unit was switched on, one for each run-up, such as
+    ["2027-03-31T08:00:00Z"]. Takes a list of names. Left out: one run-up, from the first point on; a run with
+    a port notes them itself."""
     talker: str
     """NMEA: letters of the talker whose sentences count, such as IN; dates count from all. PASHR has no talker,
     and always counts. Takes a text in quotes. Left out: all talkers, which have to agree."""
@@ -2700,8 +2771,11 @@ class SourceText(Section):
 class SourceTrajectory(Section):
     """The reference trajectory that a solution is scored against. Takes a table with file, true_heading,
     true_heading_uncertainty, offset, offset_uncertainty, gap, format, talker, points, heading_time,
-    heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude, longitude,
-    height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by solution:FILE."""
+    heading_rate, heading_start, heading_delay, heading_delay_uncertainty, delimiter, skip_lines, comment,
+    time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll, sigma_north,
+    sigma_east, sigma_velocity_north, sigma_velocity_east, sigma_roll, sigma_pitch, sigma_heading, quality,
+    quality_left_out, angle_unit, velocity_unit. Left out: needed by solution:FILE, besides a heading test
+    that has none."""
 
     angle_unit: Literal["deg", "rad"]
     """Unit of the columns of angles: position and attitude. Takes one of "deg", "rad". Default: "deg"."""
@@ -2714,7 +2788,8 @@ class SourceTrajectory(Section):
     """Velocity over ground, east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
     file: str
-    """Its file. Relative to the scenario. Takes a text in quotes. Left out: true_heading is the reference."""
+    """Its file. Relative to the scenario. Takes a text in quotes. Left out: true_heading is the reference, or a
+    heading test has none."""
     format: Literal["csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens"]
     """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens".
     Default: by the name's ending: nmea and nma; pos; sbet and out; others are columns of text."""
@@ -2724,6 +2799,12 @@ class SourceTrajectory(Section):
     heading: int | str
     """Heading from north by east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
+    heading_delay: str
+    """NMEA: time from a time of day to the measurement of the first heading behind it that has no time;
+    negative: it was measured before. Takes a time such as "12 h". Left out: not known: the time to the next
+    one is in doubt."""
+    heading_delay_uncertainty: str
+    """NMEA: how far heading_delay may be off, 95 %. Takes a time such as "12 h". Default: "0 s"."""
     heading_rate: str
     """NMEA: even rate of headings in a file without any time. Sentences that are missing can't be seen. Takes a
     frequency such as "200 Hz". Left out: they have times."""
@@ -2757,9 +2838,35 @@ class SourceTrajectory(Section):
     points: Literal["positions", "headings"]
     """NMEA: sentences that make a point each. Takes one of "positions", "headings". Default: headings, where the
     reference is true_heading or the file has no position; else positions."""
+    quality: int | str
+    """Quality of a row, in words or numbers of its own, which the account counts. Takes a column number from 1,
+    or a column's name. Left out: not stated."""
+    quality_left_out: Sequence[str]
+    """Qualities whose rows are left out, such as ["0", "no fix"]. Takes a list of names. Default: []."""
     roll: int | str
     """Roll, positive with the starboard side down. Takes a column number from 1, or a column's name. Default:
     the name of Octant's exports, where the header has it."""
+    sigma_east: int | str
+    """Standard deviation of the position to the east, m. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_heading: int | str
+    """Standard deviation of the heading, in angle_unit. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_north: int | str
+    """Standard deviation of the position to the north, m. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_pitch: int | str
+    """Standard deviation of the pitch, in angle_unit. Takes a column number from 1, or a column's name. Left
+    out: not stated."""
+    sigma_roll: int | str
+    """Standard deviation of the roll, in angle_unit. Takes a column number from 1, or a column's name. Left out:
+    not stated."""
+    sigma_velocity_east: int | str
+    """Standard deviation of the velocity to the east, in velocity_unit. Takes a column number from 1, or a
+    column's name. Left out: not stated."""
+    sigma_velocity_north: int | str
+    """Standard deviation of the velocity to the north, in velocity_unit. Takes a column number from 1, or a
+    column's name. Left out: not stated."""
     skip_lines: int
     """Columns of text: lines to skip at the start. Takes a whole number from 0 to 1000000. Default: 0."""
     talker: str
@@ -2781,8 +2888,13 @@ class SourceTrajectory(Section):
 
 class Source(Section):
     """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
-    live, log."""
+    dither, live, log."""
 
+    dither: float
+    """Noise that the harness adds to the samples of an instrument whose own noise isn't known, from the seed, in
+    parts of imu.angle_random_walk and imu.velocity_random_walk: shows whether the unit follows its samples.
+    Their noise grows by the root of 1 + dither². Takes a number between 0.05 and 1. Left out: nothing is
+    added."""
     @property
     def fmu(self) -> SourceFmu:
         """How the FMU of source.uri is run, and what its variables are. Takes a table with interface, process,
@@ -2821,10 +2933,12 @@ class Source(Section):
     def reference(self, value: SourceReference | Mapping[str, Any]) -> None: ...
     @property
     def solution(self) -> SourceSolution:
-        """How the solution of source.uri is read. Takes a table with skip, format, talker, points, heading_time,
-        heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude,
-        longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Default: solution:
-        the defaults of its keys."""
+        """How the solution of source.uri is read. Takes a table with skip, switched_on, silence, rehearsal,
+        format, talker, points, heading_time, heading_rate, heading_start, heading_delay,
+        heading_delay_uncertainty, delimiter, skip_lines, comment, time_column, time_unit, latitude,
+        longitude, height, north, east, heading, pitch, roll, sigma_north, sigma_east, sigma_velocity_north,
+        sigma_velocity_east, sigma_roll, sigma_pitch, sigma_heading, quality, quality_left_out, angle_unit,
+        velocity_unit. Default: solution: the defaults of its keys."""
     @solution.setter
     def solution(self, value: SourceSolution | Mapping[str, Any]) -> None: ...
     @property
@@ -2838,9 +2952,11 @@ class Source(Section):
     def trajectory(self) -> SourceTrajectory:
         """The reference trajectory that a solution is scored against. Takes a table with file, true_heading,
         true_heading_uncertainty, offset, offset_uncertainty, gap, format, talker, points, heading_time,
-        heading_rate, heading_start, delimiter, skip_lines, comment, time_column, time_unit, latitude,
-        longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by
-        solution:FILE."""
+        heading_rate, heading_start, heading_delay, heading_delay_uncertainty, delimiter, skip_lines, comment,
+        time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll, sigma_north,
+        sigma_east, sigma_velocity_north, sigma_velocity_east, sigma_roll, sigma_pitch, sigma_heading,
+        quality, quality_left_out, angle_unit, velocity_unit. Left out: needed by solution:FILE, besides a
+        heading test that has none."""
     @trajectory.setter
     def trajectory(self, value: SourceTrajectory | Mapping[str, Any]) -> None: ...
     uri: str
@@ -3091,7 +3207,7 @@ class Scenario(Section):
     @property
     def source(self) -> Source:
         """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
-        live, log."""
+        dither, live, log."""
     @source.setter
     def source(self, value: Source | Mapping[str, Any]) -> None: ...
     title: str
