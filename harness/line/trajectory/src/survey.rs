@@ -131,11 +131,12 @@ impl TrajectorySurvey {
         // A unit that sends on without a solution hasn't ended where its last point is.
         let heard_ns = reader.heard_ns().filter(|heard_ns| heard_ns - span_ns.1 > period_ns.max(1));
         let span_ns = (span_ns.0, heard_ns.unwrap_or(span_ns.1));
+        let mean_ns = alike_ns as f64 / alike.max(1) as f64;
         let has_majority = 2 * alike.unsigned_abs() + 1 >= points - 1;
-        let period_ns = match has_majority {
-            true => whole_rate(period_ns, alike_ns as f64 / alike.max(1) as f64),
-            false => scattered(&mut first_intervals_ns).unwrap_or(period_ns),
-        };
+        let of_majority_ns = has_majority.then(|| whole_rate(period_ns, mean_ns)).flatten();
+        let period_ns = of_majority_ns
+            .or_else(|| scattered(&mut first_intervals_ns, has_majority))
+            .unwrap_or_else(|| mean_ns.round() as i64);
         let most = |count: u64| count as f64 >= SHARE * found as f64;
         let mut account = reader.account(role);
         let [position, velocity, attitude, tilt] = counts.map(most);
@@ -163,34 +164,36 @@ impl TrajectorySurvey {
     }
 }
 
-/// The period of intervals that scatter, as times of arrival do: the mean of those that are about their median, or that of
-/// a whole rate as near to it as their scatter leaves open. `None` without intervals.
-fn scattered(intervals_ns: &mut [i64]) -> Option<i64> {
+/// The period of intervals that scatter, as times of arrival do: that of the whole rate that is as near to the mean of those
+/// about their median as their scatter leaves open; where none is and `is_known` is false, the mean. `None`: it isn't found.
+fn scattered(intervals_ns: &mut [i64], is_known: bool) -> Option<i64> {
     intervals_ns.sort_unstable();
-    let count = intervals_ns.len();
-    let middle_ns = *intervals_ns.get(count / 2)?;
-    let near = intervals_ns.iter().filter(|ns| 2 * (**ns - middle_ns).abs() < middle_ns);
-    let (alike, sum_ns) = near.fold((0_u32, 0_i64), |(count, sum), ns| (count + 1, sum + ns));
-    let mean_ns = sum_ns as f64 / f64::from(alike.max(1));
+    let middle_ns = *intervals_ns.get(intervals_ns.len() / 2)?;
+    let is_near = |ns: &&i64| 2 * (**ns - middle_ns).abs() < middle_ns;
+    let near: Vec<i64> = intervals_ns.iter().filter(is_near).copied().collect();
+    let (first_ns, last_ns) = (near.first()?, near.last()?);
+    let count = near.len() as f64;
+    let mean_ns = near.iter().sum::<i64>() as f64 / count;
     // The mean of successive intervals is off by the jitter of the first and the last stamp alone.
-    let spread_ns = intervals_ns[count - 1 - count / 20] - intervals_ns[count / 20];
-    let off_ns = (4.0 * spread_ns as f64 / count as f64).min(SCATTER_MAX * mean_ns);
+    let off_ns = (4.0 * (last_ns - first_ns) as f64 / count).min(SCATTER_MAX * mean_ns);
     let whole_ns = 1e9 / (1e9 / mean_ns).round().max(1.0);
-    let is_whole = (mean_ns - whole_ns).abs() <= off_ns;
-    Some((if is_whole { whole_ns } else { mean_ns }).round() as i64)
+    if (mean_ns - whole_ns).abs() <= off_ns {
+        return Some(whole_ns.round() as i64);
+    }
+    (!is_known).then(|| mean_ns.round() as i64)
 }
 
 /// The period that intervals with this mean have, which are about `about_ns`: that of a whole rate or a round time, if
-/// they are as near to it as stamps jitter.
-fn whole_rate(about_ns: i64, mean_ns: f64) -> i64 {
+/// they are as near to it as stamps jitter; `None`: neither.
+fn whole_rate(about_ns: i64, mean_ns: f64) -> Option<i64> {
     let near = |ns: f64| (mean_ns - ns).abs() <= JITTER * mean_ns;
     let rate_hz = (1e9 / mean_ns).round().max(1.0);
     if near(about_ns as f64) {
-        about_ns
+        Some(about_ns)
     } else if near(1e9 / rate_hz) {
-        (1e9 / rate_hz).round() as i64
+        Some((1e9 / rate_hz).round() as i64)
     } else {
-        mean_ns.round() as i64
+        None
     }
 }
 

@@ -57,6 +57,7 @@ mod selftest;
 mod serve;
 mod signing;
 mod smooth;
+mod solution_keys;
 pub mod source_uri;
 mod sweep;
 pub mod terminal;

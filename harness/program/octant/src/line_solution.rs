@@ -6,7 +6,7 @@ use crate::attendant::Attendant;
 use crate::failure::Failure;
 use crate::progress::Follower;
 use crate::run_request::RunRequest;
-use crate::score_solution::keys_of_solution;
+use crate::solution_keys::keys_of_solution;
 use crate::terminal::{note, write};
 use octant_base::control::Control;
 use octant_base::number::counted;

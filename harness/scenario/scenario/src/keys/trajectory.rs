@@ -64,7 +64,7 @@ macro_rules! trajectory {
                     "NMEA: even rate of headings in a file without any time. Sentences that are missing can't be seen.";
                 heading_start: At<Option<String>> = text(), absent("0 s on a scale of its own"),
                     "NMEA: time of the first heading of heading_rate, such as 2027-03-31T08:00:00Z.";
-                heading_delay: At<Option<f64>> = time(-10.0, 10.0, "from -10 to 10 s"),
+                heading_delay: At<Option<f64>> = time(-86400.0, 86400.0, "from -1 day to 1 day"),
                     absent("not known: the time to the next one is in doubt"),
                     "NMEA: time from a time of day to the measurement of the first heading behind it that has no time; negative: it was measured before.";
                 heading_delay_uncertainty: At<f64> = time(0.0, 10.0, "from 0 to 10 s"), "0 s",
