@@ -2781,8 +2781,13 @@ class SourceTrajectory(Section):
 
 class Source(Section):
     """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
-    live, log."""
+    dither, live, log."""
 
+    dither: float
+    """Noise that the harness adds to the samples of an instrument whose own noise isn't known, from the seed, in
+    parts of imu.angle_random_walk and imu.velocity_random_walk: shows whether the unit follows its samples.
+    Their noise grows by the root of 1 + dither². Takes a number between 0.05 and 1. Left out: nothing is
+    added."""
     @property
     def fmu(self) -> SourceFmu:
         """How the FMU of source.uri is run, and what its variables are. Takes a table with interface, process,
@@ -3091,7 +3096,7 @@ class Scenario(Section):
     @property
     def source(self) -> Source:
         """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
-        live, log."""
+        dither, live, log."""
     @source.setter
     def source(self, value: Source | Mapping[str, Any]) -> None: ...
     title: str
