@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 /// Largest standard deviation of a slope that says something.
 pub const SIGMA_MAX: f64 = 0.05;
-/// Deviation from 1 beyond five standard deviations that a slope may have: answers that lag by parts of a second, or are
+/// Deviation from 1 beyond three standard deviations that a slope may have: answers that lag by parts of a second, or are
 /// smoothed over seconds, lose a part of the noise.
-pub const TOLERANCE: f64 = 0.25;
+pub const TOLERANCE: f64 = 0.2;
 /// Number of standard deviations.
-const SIGMAS: f64 = 5.0;
+const SIGMAS: f64 = 3.0;
 
 /// Noise that the bench knows to be in the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,6 +3,7 @@
 use super::compared::{heading_output, stated, timing};
 use super::difference::difference;
 use super::findings::findings;
+use super::known_noise::{dither_fact, false_alarms};
 use super::method::MethodRun;
 use super::refusal::{RefusedRun, explained};
 use super::scores_text::{alignment_line, heading_lines, navigation_lines, solution_line};
@@ -138,13 +139,7 @@ pub fn assemble_with(
         timing: timing(scenario, &primary),
     };
     let counterfactual = difference(scenario, &primary);
-    let false_alarms = match &counterfactual {
-        Some(counterfactual) => Some(counterfactual.false_alarms),
-        None => {
-            let health = &primary.observed.measurements.health;
-            scenario.faults.is_empty().then(|| health.episodes().len() as u64 + health.unlisted())
-        }
-    };
+    let false_alarms = false_alarms(scenario, &primary, counterfactual.as_ref());
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let baseline_solution = baseline
         .as_ref()
@@ -345,14 +340,7 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         facts.retain(|(name, _)| of_solution.contains(&name.as_str()));
     }
     facts.extend(scenario.source.fact().map(|(name, fact)| (name.to_owned(), fact)));
-    if let Some(part) = scenario.dither {
-        let grows = 100.0 * (libm::hypot(1.0, part) - 1.0);
-        let fact = format!(
-            "{} of the random walks, from the seed: the noise of the samples grows by {grows:.1} %",
-            number::plain(part, 4)
-        );
-        facts.push(("dither".to_owned(), fact));
-    }
+    facts.extend(dither_fact(scenario));
     if let Some(drive) = &scenario.drive {
         let range = |axis: TableAxis| {
             let limits = drive.settings.limits.of(axis);
@@ -393,13 +381,8 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
     for fault in &summary.faults {
         line(format!("  {}", fault.sentence()));
     }
-    let primary = (
-        &summary.method,
-        &summary.alignment,
-        &summary.calibration,
-        &summary.navigation,
-        &summary.followed,
-    );
+    let s = summary;
+    let primary = (&s.method, &s.alignment, &s.calibration, &s.navigation, &s.followed);
     let baseline = summary.baseline.as_ref();
     let methods = std::iter::once(primary).chain(
         baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation, &b.followed)),

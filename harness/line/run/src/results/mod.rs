@@ -6,6 +6,7 @@ mod clock_doubt;
 mod compared;
 pub mod difference;
 pub mod findings;
+mod known_noise;
 pub(crate) mod method;
 pub mod raw_counts;
 pub mod refusal;

@@ -1,21 +1,17 @@
 //! Navigations at rest on a turning instrument, at the level of their errors: 4 h at the noise of Table 1, integrated with a
 //! step and a scheme of their own, and answers that are made of them or of something else.
 
-use super::units::{Chance, Made, Scheme, Way};
+use super::units::{ARW, Chance, Made, Scheme, VRW, Way};
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_earth::frames::{c_cb, c_nc, quaternion_from_matrix};
 use octant_earth::rotation::exp;
-use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, MICRO_G};
 use octant_followed::{Compared, FollowedScore, Follower, KnownNoise, Told};
 use octant_random::draws::Draws;
 use octant_random::stream::Triad;
 use octant_sample::{Navigation, NoiseIntegral, Truth};
 
-/// Angle random walk of Table 1, rad/√s.
-pub(crate) const ARW: f64 = 7e-4 * DEG_PER_SQRT_HOUR;
-/// Velocity random walk of Table 1, m/s/√s.
-pub(crate) const VRW: f64 = 50.0 * MICRO_G;
 const LATITUDE_RAD: f64 = 30.5 * DEG;
 const TURN_RADPS: f64 = 10.0 * DEG;
 const DWELL_S: f64 = 300.0;

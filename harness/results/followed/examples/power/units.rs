@@ -1,8 +1,12 @@
 //! Units that follow their samples and units that don't, drawn at random.
 
-use super::simulate::{ARW, VRW};
-use octant_earth::units::{ARCSEC, DEG_PER_HOUR, MICRO_G};
+use octant_earth::units::{ARCSEC, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_random::draws::Draws;
+
+/// Angle random walk of Table 1, rad/√s.
+pub(crate) const ARW: f64 = 7e-4 * DEG_PER_SQRT_HOUR;
+/// Velocity random walk of Table 1, m/s/√s.
+pub(crate) const VRW: f64 = 50.0 * MICRO_G;
 
 /// A way to compute and to give answers.
 #[derive(Clone, Debug)]
