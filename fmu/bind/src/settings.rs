@@ -3,9 +3,8 @@
 use super::convert::{ChannelConversionError, article, conversion};
 use super::find::{UnknownVariable, count, find, unknown};
 pub use super::starts::Starts;
-use octant_fmu_host::description::{
-    Causality, Description, Initial, Variability, Variable, VariableType,
-};
+use super::starts::settable;
+use octant_fmu_host::description::{Causality, Description, Variability, Variable, VariableType};
 use octant_fmu_host::instance::{Access, InstanceError, VariableGroup, whole};
 use octant_scenario::channel::{Channel, Class};
 use octant_scenario::{Set, UnitDimension, quantity_of};
@@ -247,20 +246,6 @@ fn check_settable(variable: &Variable) -> Result<(), SettingError> {
             _ => "calculated by the FMU",
         },
     })
-}
-
-/// Returns whether a variable has a start value that may be changed.
-pub(super) fn settable(variable: &Variable) -> bool {
-    if variable.variability == Variability::Constant {
-        return false;
-    }
-    match variable.causality {
-        Causality::Parameter | Causality::StructuralParameter | Causality::Input => true,
-        Causality::CalculatedParameter | Causality::Independent => false,
-        Causality::Output | Causality::Local => {
-            matches!(variable.initial, Some(Initial::Exact | Initial::Approx))
-        }
-    }
 }
 
 fn wrong(variable: &Variable, found: &Set, expected: &str) -> SettingError {

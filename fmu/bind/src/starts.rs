@@ -2,8 +2,9 @@
 
 use super::bind::start_exactly;
 use super::find::count;
-use super::settings::settable;
-use octant_fmu_host::description::{Description, VariableType};
+use octant_fmu_host::description::{
+    Causality, Description, Initial, Variability, Variable, VariableType,
+};
 use octant_fmu_host::instance::{Instance, InstanceError, VariableGroup};
 use std::collections::BTreeMap;
 
@@ -92,5 +93,19 @@ impl Starts {
             instance.set_binaries(group, bytes)?;
         }
         Ok(())
+    }
+}
+
+/// Returns whether a variable has a start value that may be changed.
+pub(super) fn settable(variable: &Variable) -> bool {
+    if variable.variability == Variability::Constant {
+        return false;
+    }
+    match variable.causality {
+        Causality::Parameter | Causality::StructuralParameter | Causality::Input => true,
+        Causality::CalculatedParameter | Causality::Independent => false,
+        Causality::Output | Causality::Local => {
+            matches!(variable.initial, Some(Initial::Exact | Initial::Approx))
+        }
     }
 }

@@ -5,21 +5,10 @@ mod carried;
 use super::flat::{Hop, HopEntry};
 use super::ssp::parameters::{SystemEnumeration, Transformation};
 use super::values::{has, is_float, is_numeric, kind_name, rounded, told};
-use carried::CarriedNumber;
+use carried::{CarriedNumber, Step};
 use octant_fmu_host::description::units::{UnitConversion, candidates, dimension, known, meant};
 use octant_fmu_host::description::{BaseUnit, Description, Variable, VariableType};
 use octant_fmu_host::instance::whole;
-
-/// One operation on a value.
-#[derive(Clone, Debug, PartialEq)]
-enum Step {
-    /// factor · value + offset.
-    Linear(f64, f64),
-    /// Table from value to value: of whole numbers, and of Booleans as 0 and 1.
-    Map(Vec<(i128, i128)>),
-    /// Passage through an entry of a signal dictionary, which has a type.
-    Entry(HopEntry),
-}
 
 /// Operations on a value on its way to a variable.
 #[derive(Clone, Debug, PartialEq)]

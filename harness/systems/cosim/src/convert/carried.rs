@@ -1,9 +1,19 @@
 //! A value on its way: operations on real numbers, and on whole numbers of any size.
 
-use super::Step;
 use crate::flat::HopEntry;
 use crate::values::{has, is_float, rounded};
 use octant_fmu_host::instance::whole;
+
+/// One operation on a value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Step {
+    /// factor · value + offset.
+    Linear(f64, f64),
+    /// Table from value to value: of whole numbers, and of Booleans as 0 and 1.
+    Map(Vec<(i128, i128)>),
+    /// Passage through an entry of a signal dictionary, which has a type.
+    Entry(HopEntry),
+}
 
 /// A value on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]

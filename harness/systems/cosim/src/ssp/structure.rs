@@ -119,11 +119,27 @@ impl SystemStructure {
     }
 }
 
+/// Units and enumerations that systems within a structure define.
+#[derive(Debug, Default)]
+struct Definitions {
+    units: Vec<(String, BaseUnit)>,
+    enumerations: Vec<SystemEnumeration>,
+}
+
+/// Returns whether a component is a package or an `.ssd`; `None`: it is neither.
+fn part_kind(element: &Element<'_>) -> Option<bool> {
+    match element.optional("type")? {
+        "application/x-ssp-definition" => Some(false),
+        "application/x-ssp-package" => Some(true),
+        _ => None,
+    }
+}
+
 struct Reader<'p> {
     package: &'p Package,
     /// Units of the structure's file.
     units: &'p [(String, BaseUnit)],
-    parts: RefCell<nested::Definitions>,
+    parts: RefCell<Definitions>,
 }
 
 /// Children that every element of a system may have.
@@ -153,7 +169,7 @@ impl Reader<'_> {
             )?;
             for part in parts.children() {
                 let part_read = match part.name() {
-                    "Component" => match nested::kind(&part) {
+                    "Component" => match part_kind(&part) {
                         Some(is_package) => {
                             SystemElement::System(self.nested(&part, is_package, depth + 1)?)
                         }

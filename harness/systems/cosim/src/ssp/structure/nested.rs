@@ -6,22 +6,6 @@ use crate::ssp::parameters::SystemEnumeration;
 use crate::ssp::xml::Element;
 use octant_fmu_host::description::BaseUnit;
 
-/// Units and enumerations that systems within a structure define.
-#[derive(Debug, Default)]
-pub(super) struct Definitions {
-    pub(super) units: Vec<(String, BaseUnit)>,
-    pub(super) enumerations: Vec<SystemEnumeration>,
-}
-
-/// Returns whether a component is a package or an `.ssd`; `None`: it is neither.
-pub(super) fn kind(element: &Element<'_>) -> Option<bool> {
-    match element.optional("type")? {
-        "application/x-ssp-definition" => Some(false),
-        "application/x-ssp-package" => Some(true),
-        _ => None,
-    }
-}
-
 impl Reader<'_> {
     /// Reads a component that is a system. Its experiment and its annotations are those of a system that
     /// runs alone, and aren't used.
