@@ -111,7 +111,7 @@ pub struct Continuity {
     sway: f64,
     /// Change of the specific force whose edge is half of the velocity's limit, m/s².
     correction_mps2: f64,
-    /// Edge by the white noise of a reading, per standard deviation of the difference of two.
+    /// Standard deviation of an edge by the white noise of readings, in that of the difference of two.
     of_readings: f64,
     /// Parameters of the cumulative sums: turn of a block attributed to noise, and limit, rad.
     sum: (f64, f64),
@@ -242,7 +242,7 @@ impl Continuity {
                 Base::Still => 0.0,
                 Base::Moving(motion) => motion.rate_radps * block_s,
             },
-            of_readings: NOISE_SIGMAS * norm_of_differences(&weights),
+            of_readings: norm_of_differences(&weights),
             sum: (
                 (SUM_RATE * walk + known) * block_s,
                 0.5 * SUM_LOG * walk / SUM_RATE
@@ -379,7 +379,7 @@ impl Continuity {
             && case
                 > limit
                     + corners
-                    + self.readings()
+                    + self.of_readings * self.readings()
                     + self.axes * (body + azimuth.abs() + roll.abs());
         if found && turns && case < ENCODERS_SHARE * body {
             self.encoder_edges = self.encoder_edges.saturating_add(1);
@@ -406,13 +406,13 @@ impl Continuity {
         *count = count.saturating_add(1);
     }
 
-    /// Largest edge that the white noise of the encoders causes, rad, as it was at rest so far. Sums of magnitudes: a
-    /// single wrong reading tells little.
+    /// Difference of two readings that the white noise of the encoders allows, rad, as it was at rest so far. Sums of
+    /// magnitudes: a single wrong reading tells little.
     fn readings(&self) -> f64 {
         // Mean magnitude of a normal variable per standard deviation: √(2/π).
         const MEAN: f64 = 0.797_884_560_802_865_4;
         let ([azimuth, roll], count) = self.flicker;
-        self.of_readings * libm::hypot(azimuth, roll) / (MEAN * f64::from(count.max(1)))
+        NOISE_SIGMAS * libm::hypot(azimuth, roll) / (MEAN * f64::from(count.max(1)))
     }
 
     /// Largest turns of azimuth and roll in a block, rad.
@@ -429,7 +429,7 @@ impl Continuity {
             self.sums = [[0.0; 2]; 3];
             return false;
         };
-        let (allowed, limit) = (self.sum.0, self.sum.1 * self.widened[0]);
+        let (allowed, limit) = (self.sum.0, self.sum.1 * self.widened[0] + self.readings());
         let mut reached = false;
         for (sums, beyond) in self.sums.iter_mut().zip(beyond.iter()) {
             sums[0] = (sums[0] + beyond - allowed).max(0.0);

@@ -411,6 +411,12 @@ impl CalibrationFilter {
         self.further.as_ref().and_then(FurtherStates::angle_tally)
     }
 
+    /// Contradiction to a case at rest, with the number of slips that the screens noticed; `None` if there is none.
+    #[must_use]
+    pub fn case_turn(&self, slips: u64) -> Option<CaseTurn> {
+        self.further.as_ref().and_then(|further| further.case_turn(slips))
+    }
+
     /// The further states as a part of a stored state. They are no part of [`Self`] there, so that
     /// the bytes of a filter without them are those of a program that had none.
     #[cfg(feature = "state")]

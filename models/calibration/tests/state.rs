@@ -276,7 +276,8 @@ fn a_state_of_an_earlier_version_is_refused_in_words() {
         assert_eq!(
             Core::load(&stored).unwrap_err().to_string(),
             format!(
-                "the state of a calibration core has version {version}, this program reads version 5"
+                "the state of a calibration core has version {version}, this program reads version {}",
+                STATE_FORMAT.version
             )
         );
     }

@@ -22,6 +22,8 @@ pub struct InProcess {
     /// The core without the rest of its case, until the end of the calibration.
     without_rest: Option<Box<WithoutRest>>,
     rest: Option<RestUse>,
+    /// Revisions of the core that gave way, which those of the other one go on from.
+    revisions: u32,
 }
 
 impl InProcess {
@@ -37,6 +39,7 @@ impl InProcess {
             config: Box::new(config.clone()),
             without_rest: WithoutRest::new(config)?,
             rest: None,
+            revisions: 0,
         })
     }
 
@@ -73,7 +76,8 @@ impl InProcess {
         if goes_on(output.mode) {
             self.without_rest = Some(other);
         } else {
-            self.rest = Some(other.conclude(&mut self.core, output));
+            let (rest, revisions) = other.conclude(&mut self.core, output);
+            (self.rest, self.revisions) = (Some(rest), revisions);
         }
     }
 
@@ -120,6 +124,7 @@ impl Endpoint for InProcess {
         if self.without_rest.is_some() {
             self.follow(Some(epoch), output);
         }
+        output.parameters_revision = output.parameters_revision.wrapping_add(self.revisions);
         self.revision = output.parameters_revision;
         Ok(())
     }
@@ -140,7 +145,7 @@ impl Endpoint for InProcess {
         self.core = Core::new(&config).map_err(refused)?;
         self.without_rest = WithoutRest::new(&config).map_err(refused)?;
         self.rest = None;
-        self.revision = 0;
+        (self.revision, self.revisions) = (0, 0);
         Ok(())
     }
 
@@ -164,6 +169,7 @@ impl Endpoint for InProcess {
     fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
         let mut output = self.core.end_of_stream();
         self.follow(None, &mut output);
+        output.parameters_revision = output.parameters_revision.wrapping_add(self.revisions);
         self.revision = output.parameters_revision;
         Ok(Some(output))
     }

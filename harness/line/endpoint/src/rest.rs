@@ -63,8 +63,13 @@ impl WithoutRest {
         self.output = self.core.end_of_stream();
     }
 
-    /// Compares the two at the end of the calibration, and exchanges them where the rest is contradicted.
-    pub(super) fn conclude(mut self: Box<Self>, core: &mut Core, output: &mut Output) -> RestUse {
+    /// Compares the two at the end of the calibration, and exchanges them where the rest is contradicted. The second
+    /// value is what has then to be added to the revisions of the parameters, which only grow.
+    pub(super) fn conclude(
+        mut self: Box<Self>,
+        core: &mut Core,
+        output: &mut Output,
+    ) -> (RestUse, u32) {
         let mut rest = RestUse::default();
         match core.refusal() {
             Some(CalibrationRefusal::CaseTurned(turn)) => {
@@ -74,8 +79,8 @@ impl WithoutRest {
             Some(refusal) if self.core.refusal().is_none() => {
                 rest.contradicted = Some(refusal.to_string());
             }
-            Some(_) => return rest,
-            None if self.core.refusal().is_some() => return rest,
+            Some(_) => return (rest, 0),
+            None if self.core.refusal().is_some() => return (rest, 0),
             None => {
                 let (sigmas, parameter) = largest_difference(core, &self.core);
                 rest.largest_difference = Some((sigmas, NAMES[parameter]));
@@ -87,13 +92,13 @@ impl WithoutRest {
                 }
             }
         }
-        if rest.contradicted.is_some() {
-            core::mem::swap(core, &mut self.core);
-            *output = self.output;
-            // What reads parameters by their revision reads them once more.
-            output.parameters_revision = output.parameters_revision.wrapping_add(1);
+        if rest.contradicted.is_none() {
+            return (rest, 0);
         }
-        rest
+        core::mem::swap(core, &mut self.core);
+        let before = output.parameters_revision;
+        *output = self.output;
+        (rest, before.saturating_add(1).saturating_sub(output.parameters_revision).max(1))
     }
 }
 

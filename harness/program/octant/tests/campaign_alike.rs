@@ -176,20 +176,20 @@ fn a_case_has_the_twin_that_it_has_alone() {
 #[test]
 fn the_command_gives_the_same_bytes_both_ways() {
     let folder = tempfile::tempdir().unwrap();
-    both_ways(folder.path(), &plan(folder.path()));
+    both_ways(folder.path(), &plan(folder.path()), ("--jobs", "--undivided"));
 }
 
 #[test]
 fn the_command_gives_the_same_twins_both_ways() {
     let folder = tempfile::tempdir().unwrap();
-    both_ways(folder.path(), &plan_with_twins(folder.path()));
+    both_ways(folder.path(), &plan_with_twins(folder.path()), ("--jobs", "--undivided"));
 }
 
-fn both_ways(here: &Path, plan: &Plan) {
+fn both_ways(here: &Path, plan: &Plan, (jobs, alone): (&str, &str)) {
     let [divided, undivided] =
-        [("divided", &[][..]), ("undivided", &["--undivided"][..])].map(|(name, options)| {
+        [("divided", &[][..]), ("undivided", &[alone][..])].map(|(name, options)| {
             plan.write(&here.join(name), false).unwrap();
-            let mut command = program(&["campaign", "run", name, "--jobs", "2"]);
+            let mut command = program(&["campaign", "run", name, jobs, "2"]);
             let output = command.current_dir(here).args(options).output().unwrap();
             assert_eq!(output.status.code(), Some(0), "{output:?}");
             let stored = CampaignResults::open(&here.join(name)).unwrap();

@@ -5,8 +5,6 @@
 
 use super::FurtherStates;
 use super::border::CASE;
-use crate::filter::CalibrationFilter;
-use nalgebra::UnitQuaternion;
 use octant_earth::rotation::log;
 use octant_earth::units::ARCSEC;
 
@@ -61,28 +59,6 @@ pub enum CaseTurn {
     },
 }
 
-/// Attitude of the case at the first measurement with its variances about the axes of n, and the turn that exceeded
-/// the range by most.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct CaseTravel {
-    /// Attitude of the case at the first measurement of the present stop.
-    axes: Option<UnitQuaternion<f64>>,
-    first: Option<(UnitQuaternion<f64>, [f64; 3])>,
-    /// Turn and limit, rad.
-    beyond: Option<(f64, f64)>,
-}
-
-impl CaseTravel {
-    /// Attitude of the case with which a stop is linearised; `moved`: it is another one.
-    pub(super) fn axes(&mut self, q_nc: &UnitQuaternion<f64>, moved: bool) -> UnitQuaternion<f64> {
-        if moved {
-            self.axes = None;
-        }
-        *self.axes.get_or_insert(*q_nc)
-    }
-}
-
 impl FurtherStates {
     /// Takes note of how far the case has turned, after a measurement.
     pub(super) fn follow_case(&mut self) {
@@ -107,7 +83,7 @@ impl FurtherStates {
     }
 
     /// Returns the contradiction to a case at rest, with the number of slips that the screens noticed.
-    fn case_turn(&self, slips: u64) -> Option<CaseTurn> {
+    pub(in crate::filter) fn case_turn(&self, slips: u64) -> Option<CaseTurn> {
         let angles = self.angles.as_ref()?;
         let (tally, travel) = (&angles.tally, angles.travel.as_ref()?);
         let (rejected, total) = (tally.rejected, tally.used + tally.rejected);
@@ -124,14 +100,5 @@ impl FurtherStates {
         } else {
             None
         }
-    }
-}
-
-impl CalibrationFilter {
-    /// Returns what contradicts a case that is said to rest, with the number of slips that the screens noticed; `None`
-    /// if nothing does, or it isn't said to.
-    #[must_use]
-    pub fn case_turn(&self, slips: u64) -> Option<CaseTurn> {
-        self.further.as_ref().and_then(|further| further.case_turn(slips))
     }
 }

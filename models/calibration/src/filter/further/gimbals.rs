@@ -1,6 +1,5 @@
 //! Gimbal angles as measurements: their settings, their counts and their reference.
 
-use super::case::CaseTravel;
 use crate::config::{AngleMeasurements, CaseRest};
 use nalgebra::UnitQuaternion;
 
@@ -57,4 +56,26 @@ pub(super) struct GimbalReference {
     pub(super) q_nc: Option<UnitQuaternion<f64>>,
     /// Angles at the last measurement, azimuth and roll, rad; `None`: the stop isn't known.
     pub(super) at: Option<[f64; 2]>,
+}
+
+/// Attitude of the case at the first measurement with its variances about the axes of n, and the turn that exceeded
+/// the range by most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct CaseTravel {
+    /// Attitude of the case at the first measurement of the present stop.
+    axes: Option<UnitQuaternion<f64>>,
+    pub(super) first: Option<(UnitQuaternion<f64>, [f64; 3])>,
+    /// Turn and limit, rad.
+    pub(super) beyond: Option<(f64, f64)>,
+}
+
+impl CaseTravel {
+    /// Attitude of the case with which a stop is linearised; `moved`: it is another one.
+    pub(super) fn axes(&mut self, q_nc: &UnitQuaternion<f64>, moved: bool) -> UnitQuaternion<f64> {
+        if moved {
+            self.axes = None;
+        }
+        *self.axes.get_or_insert(*q_nc)
+    }
 }
