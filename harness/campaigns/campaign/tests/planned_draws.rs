@@ -77,7 +77,7 @@ fn planned(replicates: u32, rest: &str) -> (Result<Plan, String>, Told) {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("short.toml"), SCENARIO).unwrap();
     let path = folder.path().join("campaign.toml");
-    let head = format!("schema = 1\ntitle = \"draws\"\nreplicates = {replicates}\n");
+    let head = format!("schema = 1\ntitle = \"draws\"\nseed = 1\nreplicates = {replicates}\n");
     std::fs::write(&path, head + rest).unwrap();
     let told = RefCell::new(Told::new());
     let tell = |stage, done, total| told.borrow_mut().push((stage, done, total));

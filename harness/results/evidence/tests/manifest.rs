@@ -27,6 +27,7 @@ fn a_report_shows_where_a_run_comes_from() {
             "octant",
             "numerics version",
             "source revision",
+            "program, SHA-256",
             "compiler",
             "host",
             "operator",
