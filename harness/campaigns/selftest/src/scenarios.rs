@@ -41,7 +41,7 @@ pub(super) fn planned(
     bench.write(
         "campaign.toml",
         format!(
-            "schema = 1\ntitle = \"known\"\nreplicates = {cases}\n\
+            "schema = 1\ntitle = \"known\"\nseed = 1\nreplicates = {cases}\n\
              requirements = \"requirements.toml\"\n[[scenarios]]\nid = \"short\"\n\
              file = \"short.toml\"\n{of_scenario}{faults}{of_campaign}"
         ),

@@ -168,11 +168,25 @@ fn scored(
     let as_file = read(&with_file(scenario, switched_on, &[])?)?;
     let SourceSpec::Solution(spec) = &as_file.source else { return Ok(as_file) };
     // The site is that of the bench.
-    let keys: Vec<String> = keys_of_solution(&as_file, spec)?
+    let mut keys: Vec<String> = keys_of_solution(&as_file, spec)?
         .into_iter()
         .filter(|key| !key.starts_with("site."))
         .collect();
+    keys.extend(whole_duration(&as_file, &keys));
     read(&with_file(scenario, switched_on, &keys)?)
+}
+
+/// The duration of the navigation in whole periods of the rate among the keys: one that was measured divides no planned
+/// duration, and what is left of the last period isn't compared.
+fn whole_duration(scenario: &Scenario, keys: &[String]) -> Option<String> {
+    if scenario.heading_test.is_some() {
+        return None;
+    }
+    let rate = keys.iter().find_map(|key| key.strip_prefix("imu.rate=")?.strip_suffix(" Hz"))?;
+    let period_ns = (1e9 / rate.parse::<f64>().ok()?).round();
+    let planned_ns = scenario.navigation.as_ref()?.duration_s? * 1e9;
+    let whole_ns = (planned_ns / period_ns + 1e-6).floor() * period_ns;
+    Some(format!("procedure.navigation.duration={:.9} s", whole_ns * 1e-9))
 }
 
 /// Tells how the taking ended.

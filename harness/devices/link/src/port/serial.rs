@@ -29,9 +29,30 @@ impl SerialLine {
     /// If the port isn't there or is in use, or if its driver sets another rate than requested.
     pub fn open(serial: &SerialAddress) -> Result<Self, PortError> {
         let uri = Uri::Serial(serial.clone()).to_string();
-        let port = SerialPort::open(&serial.path, serial.baud)
-            .map_err(|error| PortError::open(&uri, explain(&error)))?;
+        let port = open(serial).map_err(|error| PortError::open(&uri, explain(&error)))?;
         Ok(Self { serial: serial.clone(), uri, port: Some(port) })
+    }
+}
+
+/// Number of times that a port is tried that another program has, and the time between them.
+const TRIES: u32 = 10;
+const BETWEEN: Duration = Duration::from_millis(50);
+
+/// Opens a port. A process that was just started holds what was open in this one until it runs its program: a port that
+/// has just been closed may be held for some milliseconds.
+fn open(serial: &SerialAddress) -> std::io::Result<SerialPort> {
+    let mut tries = TRIES;
+    loop {
+        tries -= 1;
+        match SerialPort::open(&serial.path, serial.baud) {
+            Err(error)
+                if tries > 0
+                    && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::ResourceBusy) =>
+            {
+                std::thread::sleep(BETWEEN);
+            }
+            result => return result,
+        }
     }
 }
 
