@@ -27,13 +27,23 @@ pub enum ArrivalStamp {
 struct Stamper {
     stamp: ArrivalStamp,
     begins_line: bool,
+    /// Time of the last line. Several that came at once have times of their own, in their order.
+    last: SystemTime,
 }
+
+/// Time between two lines that came at once.
+const NEXT: Duration = Duration::from_micros(1);
+/// Time up to which a line before the last one came at once with it.
+const AT_ONCE: Duration = Duration::from_millis(100);
 
 impl Stamper {
     fn write(&mut self, came: &[u8], at: SystemTime, to: &mut Vec<u8>) {
         for part in came.split_inclusive(|byte| *byte == b'\n') {
             if self.begins_line {
-                self.begin(part, at, to);
+                let is_at_once = self.last.duration_since(at).is_ok_and(|before| before < AT_ONCE);
+                // A clock that was set back is left as it is.
+                self.last = if is_at_once { self.last + NEXT } else { at };
+                self.begin(part, self.last, to);
             }
             to.extend_from_slice(part);
             self.begins_line = part.ends_with(b"\n");
@@ -52,7 +62,7 @@ impl Stamper {
             ArrivalStamp::Written
                 if is_sentence || line.first() == Some(&b'\\') || line.starts_with(b"UdPbC") =>
             {
-                to.extend_from_slice(format!("{} ", utc::millis(at)).as_bytes());
+                to.extend_from_slice(format!("{} ", utc::nanos(at)).as_bytes());
             }
             ArrivalStamp::TagBlock | ArrivalStamp::Written => {}
         }
@@ -104,7 +114,7 @@ impl LineCapture {
             port,
             file,
             path: path.to_owned(),
-            stamper: stamp.map(|stamp| Stamper { stamp, begins_line: true }),
+            stamper: stamp.map(|stamp| Stamper { stamp, begins_line: true, last: UNIX_EPOCH }),
             buffer: vec![0; RECEIVED_BYTES].into_boxed_slice(),
             waiting: Vec::new(),
             written: now,

@@ -71,7 +71,7 @@ fn account(summary: &Value) -> &Value {
         .as_array()
         .unwrap()
         .iter()
-        .find(|input| input["name"].as_str().unwrap().starts_with("solution"))
+        .find(|input| input["input"].as_str().unwrap().starts_with("solution"))
         .unwrap()
 }
 
