@@ -272,7 +272,8 @@ def measures(listed):
     for top, found in groups.items():
         text += f"## {top}\n\n"
         text += table(["measure", "a limit is in", "sign", "meaning", "needs"],
-                      [[named(place, place), *row] for place, row in found.items()])
+                      # A measure without a table has the anchor of its heading.
+                      [[code(place) if place == top else named(place, place), *row] for place, row in found.items()])
     text += "## Names of parameters\n\nEach takes the place of `NAME`.\n\n"
     text += table(["unit", "parameters"],
                   [[code(unit), ", ".join(code(name) for name in names)] for unit, names in parameters.items()])

@@ -334,7 +334,7 @@ fn linked_within(folder: &Path, link: &Path) -> Option<u64> {
         return None;
     }
     let metadata = fs::metadata(&target).ok()?;
-    metadata.is_file().then(|| metadata.len())
+    metadata.is_file().then_some(metadata.len())
 }
 
 #[cfg(test)]

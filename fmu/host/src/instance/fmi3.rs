@@ -388,7 +388,8 @@ impl Steps for Component {
         let end_s = time_s + step_s;
         let close_s = 1e-9 * step_s + f64::EPSILON * end_s.abs();
         let from_s = if outcome == StepOutcome::Done { end_s } else { time_s };
-        if !(reached_s >= from_s - close_s && reached_s <= end_s + close_s) && !self.told_time {
+        let is_told = (from_s - close_s..=end_s + close_s).contains(&reached_s);
+        if !is_told && !self.told_time {
             self.told_time = true;
             self.base.note(&format!(
                 "fmi3DoStep: lastSuccessfulTime is {reached_s} s after {} from {time_s} s to {end_s} s",

@@ -75,9 +75,7 @@ fn run(scenario: &Scenario, twist: impl FnMut(&Epoch, &mut Output) + Send + 'sta
 }
 
 fn followed(summary: &Summary) -> &FollowedScore {
-    let score = summary.followed.as_ref().unwrap();
-    println!("{score:?}");
-    score
+    summary.followed.as_ref().unwrap()
 }
 
 /// Noise that a unit makes up: uniform, of variance 1.

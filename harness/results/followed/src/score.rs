@@ -162,15 +162,12 @@ impl FollowedScore {
         if material.unknown == material.compared {
             return Self::not_tested("the noise of the samples isn't known");
         }
-        let of =
-            |told: bool, slopes: fn(&Windows) -> Box<dyn Iterator<Item = (usize, Slope)> + '_>| {
-                let all = windows
-                    .iter()
-                    .flat_map(|of| slopes(of).map(move |slope| Channel::of(of, slope)));
-                told.then(|| Channel::best(all)).flatten()
-            };
-        let attitude = of(told.attitude, |windows| Box::new(windows.attitude()));
-        let velocity = of(told.velocity, |windows| Box::new(windows.velocity()));
+        let attitude =
+            windows.iter().flat_map(|of| of.attitude().map(move |slope| Channel::of(of, slope)));
+        let velocity =
+            windows.iter().flat_map(|of| of.velocity().map(move |slope| Channel::of(of, slope)));
+        let attitude = told.attitude.then(|| Channel::best(attitude)).flatten();
+        let velocity = told.velocity.then(|| Channel::best(velocity)).flatten();
         let named = [("attitude", attitude), ("velocity", velocity)];
         let channels =
             || named.iter().filter_map(|(name, channel)| Some((*name, channel.as_ref()?)));

@@ -188,7 +188,7 @@ impl Windows {
     /// Takes a new answer's errors at the end of the last interval, which end one window and begin the next.
     pub fn answer(&mut self, errors: &Errors, past: &Past) {
         let block = BLOCK * self.length_s;
-        if self.is_sparse && self.windows > SPARSE_FROM && past.count / block % 4 != 0 {
+        if self.is_sparse && self.windows > SPARSE_FROM && !(past.count / block).is_multiple_of(4) {
             return self.interrupt();
         }
         if let Some(open) = &self.open {

@@ -80,7 +80,9 @@ pub fn read<'a>(
         source,
     };
     let mut shared = SharedTwins::default();
-    let read = |place: usize| -> Result<Option<Option<(ReadOutcome, String, Twins)>>, ReportError> {
+    // No case, a case without a result, or one with it.
+    type Read = Option<Option<(ReadOutcome, String, Twins)>>;
+    let read = |place: usize| -> Result<Read, ReportError> {
         let Some(case) = cases.get(place) else { return Ok(None) };
         let Some((result, hash)) = results.of_plan(plan, case)? else { return Ok(Some(None)) };
         let differs = results.differing(&case.id)?.is_some();

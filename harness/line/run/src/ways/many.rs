@@ -162,7 +162,7 @@ impl Awaited {
     /// Puts a run that ended in its place; returns the scenarios that were waiting for nothing else.
     fn put(&self, place: usize, run: Result<MethodRun, MethodError>) -> Vec<Complete> {
         let is_run = place < self.runs.len();
-        let run = if is_run { Ended::Run(run) } else { Ended::twin(run) };
+        let run = if is_run { Ended::Run(Box::new(run)) } else { Ended::twin(run) };
         let mut ended = lock(&self.ended);
         ended[place] = Some(run);
         let waited = |run: &usize| *run == place || self.twin_of[*run] == Some(place);
@@ -191,7 +191,7 @@ impl Awaited {
 
 /// A run that ended.
 enum Ended {
-    Run(Result<MethodRun, MethodError>),
+    Run(Box<Result<MethodRun, MethodError>>),
     /// A run without faults, or its own words where it has no result.
     Twin(Result<Arc<MethodRun>, String>),
 }

@@ -149,7 +149,7 @@ impl Steps for Remembering {
                 let values = parameters.to_array().map(|value| value * (1.0 + 1e-6));
                 (Parameters::from_array(&values), *sigma)
             }
-            (_, Some(kept)) => kept.parameters.clone(),
+            (_, Some(kept)) => kept.parameters,
         }
     }
 }

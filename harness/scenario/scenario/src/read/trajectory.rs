@@ -184,12 +184,15 @@ pub(super) fn check(keys: &ScenarioKeys, mut scenario: Scenario) -> Result<Scena
     Ok(scenario)
 }
 
+/// Times at which the unit was switched on, the keys of the test, and the address of the source.
+type OfRunUps<'a> = (Option<&'a At<Option<Vec<String>>>>, &'a HeadingTestKeys, &'a At<String>);
+
 /// Adds the run-ups of a heading test to a solution.
 fn add_run_ups(
     spec: &mut SolutionSpec,
     test: &HeadingTestSpec,
     run_up_s: Option<f64>,
-    (switched_on, keys, of_uri): (Option<&At<Option<Vec<String>>>>, &HeadingTestKeys, &At<String>),
+    (switched_on, keys, of_uri): OfRunUps<'_>,
 ) -> Result<(), Problem> {
     let count = test.run_ups as usize;
     if *keys.resolution > 0.0 {

@@ -9,8 +9,10 @@ pub struct Unasked {
     pub passes: &'static str,
 }
 
-/// Kinds, each with a test whether a measure (without bars) is of it.
-const KINDS: [(Unasked, fn(&str) -> bool); 3] = [
+/// A kind, and whether a measure (without bars) is of it.
+type Kind = (Unasked, fn(&str) -> bool);
+
+const KINDS: [Kind; 3] = [
     (
         Unasked {
             measure: "calibration.worst_normalized_error",
