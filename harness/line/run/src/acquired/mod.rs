@@ -2,8 +2,8 @@
 //! table are switched, pauses are counted.
 //!
 //! Nothing is scored here. The file that is written is scored as one that was captured before, by the same code. The time of
-//! such a run is that of its bench: it stands while a step between two run-ups waits for its answer, and goes on while the
-//! unit has no power.
+//! such a run is that of its bench: it stands while a step between two run-ups waits for its answer, goes on while the unit
+//! has no power, and stands where the unit is switched on later than planned.
 
 mod clock;
 mod error;
@@ -210,9 +210,12 @@ impl Acquisition<'_> {
             let elapsed = |stood: Duration| {
                 now.duration_since(first).unwrap_or_default().saturating_sub(stood)
             };
+            let number = switched_on.len() as u32;
+            let on_again = times.every * number;
             let at = elapsed(self.stood);
             if self.stands.is_none() {
-                self.steps.ask(at);
+                // A pause that lasts longer than planned isn't time of the run.
+                self.steps.ask(if is_on { at } else { at.min(on_again) });
             }
             if self.steps.hold() {
                 self.stands.get_or_insert(now);
@@ -222,8 +225,6 @@ impl Acquisition<'_> {
                 self.stood += now.duration_since(since).unwrap_or_default();
             }
             let at = elapsed(self.stood);
-            let number = switched_on.len() as u32;
-            let on_again = times.every * number;
             if is_on && at >= times.every * (number - 1) + times.run_up {
                 if number == times.run_ups {
                     return Ok(AcquiredEnd::Planned);
@@ -236,7 +237,10 @@ impl Acquisition<'_> {
                 unit.switch(true)?;
                 self.capture.begin_again();
                 is_on = true;
-                switched_on.push(on(unit, self.clock.now().unwrap_or(now)));
+                // A run-up has its whole length, also where a table or a supply took longer than the pause.
+                let now = self.clock.now().unwrap_or(now);
+                self.stood = now.duration_since(first).unwrap_or_default().saturating_sub(on_again);
+                switched_on.push(on(unit, now));
                 begun(switched_on);
             }
         }
