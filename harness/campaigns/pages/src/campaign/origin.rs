@@ -42,7 +42,7 @@ pub(super) fn entries(report: &CampaignReport<'_>) -> Vec<(String, String)> {
     add("source revision", format!("{commit}{changes}"));
     add("program, SHA-256", program_sha256().unwrap_or_else(unknown));
     add("plan", report.plan.id.clone());
-    add("seed", statistics.seed.clone());
+    add("seed", statistics.seed.strip_prefix("seed ").unwrap_or(&statistics.seed).to_owned());
     add("results, BLAKE3", statistics.results_blake3.clone());
     add("signature", report.signature.clone().unwrap_or_else(|| "unsigned".to_owned()));
     all

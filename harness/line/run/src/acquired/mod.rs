@@ -203,7 +203,8 @@ impl Acquisition<'_> {
         switched_on.push(first);
         begun(switched_on);
         loop {
-            if let Some(end) = self.take(is_on)? {
+            // While a step holds the run a person may have cut the power.
+            if let Some(end) = self.take(is_on && self.stands.is_none())? {
                 return Ok(end);
             }
             let Some(now) = self.clock.now() else { continue };
