@@ -31,7 +31,7 @@ silence = \"2 s\"
 true_heading = \"40.1 deg\"
 true_heading_uncertainty = \"0.02 deg\"
 [procedure.navigation]
-duration = \"3 s\"
+duration = \"8 s\"
 [[requirements]]
 id = \"HDG-1\"
 text = \"The heading stays near the surveyed one.\"
@@ -161,11 +161,10 @@ fn ths(k: u32) -> String {
 fn datagrams_and_a_server_on_tcp_are_lines_too() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let short = NEAR.replace("3 s", "1 s");
     let free = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let to = free.local_addr().unwrap();
     drop(free);
-    std::fs::write(here.join("line.toml"), short.replace("serial:unit", &format!("udp:{to}")))
+    std::fs::write(here.join("line.toml"), NEAR.replace("serial:unit", &format!("udp:{to}")))
         .unwrap();
     let from = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let (status, text) = during(here, |k| {
@@ -179,7 +178,7 @@ fn datagrams_and_a_server_on_tcp_are_lines_too() {
     assert_scored_alike(here);
     let server = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let uri = format!("tcp:{}", server.local_addr().unwrap());
-    std::fs::write(here.join("line.toml"), short.replace("serial:unit", &uri)).unwrap();
+    std::fs::write(here.join("line.toml"), NEAR.replace("serial:unit", &uri)).unwrap();
     let mut connection = None;
     let (status, text) = during(here, |k| {
         let to = connection.get_or_insert_with(|| server.accept().unwrap().0);
