@@ -208,7 +208,7 @@ impl LineCapture {
     pub fn reopen(&mut self) -> bool {
         let is_back = self.port.reopen().is_ok();
         self.counts.reopened += u64::from(is_back);
-        // What was cut off isn't continued.
+        // A record that was cut off isn't continued.
         if let Some(stamper) =
             self.stamper.as_mut().filter(|stamper| is_back && !stamper.begins_line)
         {

@@ -13,7 +13,7 @@ pub enum PairsError {
     /// A file name can't be expanded.
     #[error(transparent)]
     Name(#[from] FileNameError),
-    /// It isn't known how the times of the two files differ.
+    /// The difference between the times of the two files isn't known.
     #[error(
         "compare {solution}, which tells the time in {}, with {reference}, in {}: expected source.trajectory.offset, which is \
          added to the solution's times to get those of the reference, such as \"0 s\"",

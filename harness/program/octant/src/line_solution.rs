@@ -203,7 +203,7 @@ fn tell(acquired: &Acquired) {
     }
 }
 
-/// What the manifest says of the port.
+/// Entry of the manifest on the port.
 fn bench(acquired: &Acquired) -> serde_json::Value {
     let Acquired { switched_on, end, counts, reached_at, .. } = acquired;
     let times: Vec<String> = switched_on.iter().map(|time| utc::millis(*time)).collect();

@@ -1,4 +1,4 @@
-//! What a system of FMUs carries and says exactly: whole numbers of 64 bits, values that are no
+//! Values that a system of FMUs carries and says exactly: whole numbers of 64 bits, values that are no
 //! numbers, time events, and a hash of everything that is recorded.
 
 use crate::common::foreign;

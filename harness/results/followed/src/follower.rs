@@ -42,7 +42,7 @@ pub struct Follower {
     state: Box<State>,
 }
 
-/// What is large.
+/// Large part of the state.
 #[derive(Clone, Debug)]
 struct State {
     past: Past,

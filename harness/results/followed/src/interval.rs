@@ -111,9 +111,9 @@ pub struct Noise {
 /// Effects of parameters in an interval, north and east.
 #[derive(Clone, Copy, Debug)]
 pub struct Effects {
-    /// Of those of the gyros on φ.
+    /// Effects of the gyros' on φ.
     pub gyro: [[f64; GYRO_PARAMETERS]; 2],
-    /// Of those of the accelerometers on the velocity.
+    /// Effects of the accelerometers' on the velocity.
     pub accelerometer: [[f64; ACCEL_PARAMETERS]; 2],
 }
 

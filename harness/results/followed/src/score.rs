@@ -29,7 +29,7 @@ pub enum KnownNoise {
 pub enum Followed {
     /// The navigation was computed from the samples.
     Followed,
-    /// It wasn't.
+    /// Not followed.
     NotFollowed,
     /// There is too little information.
     NotTested,
@@ -87,7 +87,7 @@ pub struct Channel {
     pub windows: u64,
 }
 
-/// What a result is derived from.
+/// Material that a result is derived from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Material<'a> {
     pub(crate) told: Told,

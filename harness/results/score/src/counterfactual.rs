@@ -68,7 +68,7 @@ pub struct Counterfactual {
     /// for a whole one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub twin_lacks: Option<String>,
-    /// What the two sessions show of the memory of a unit in another process or device; left out where the core of this
+    /// Memory that the two sessions show of a unit in another process or device; left out where the core of this
     /// process is the unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sessions: Option<Box<Sessions>>,

@@ -61,7 +61,7 @@ fn of_accelerometer(axis: usize) -> [Option<usize>; ACCEL] {
     [Some(21 + axis), x, y, z]
 }
 
-/// What is compared with the information.
+/// Errors that are compared with the information.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimated<'a> {
     /// True parameters.

@@ -42,7 +42,7 @@ pub struct SessionPoint {
     pub dither_rad: [f64; 3],
 }
 
-/// Which of the two sessions came first.
+/// Session that came first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FirstSession {
@@ -63,7 +63,7 @@ pub struct DitherShare {
     pub window_s: u64,
 }
 
-/// What two sessions of one unit show of its memory.
+/// Memory of a unit, as its two sessions show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sessions {
     /// The session that came first, drawn from the seed.

@@ -389,7 +389,7 @@ pub fn judge_by(
 #[must_use]
 pub fn claim(draws: DrawCounts, lower: f64, confidence: f64) -> String {
     let all_of = match draws.rows {
-        // Of draws that are open, some checks are missing; and not all checks are those of the draws that passed.
+        // Some checks of open draws are missing; and not all checks are those of the draws that passed.
         rows if rows > draws.all() && draws.passed < draws.all() => {
             " in all of their checks".to_owned()
         }

@@ -156,7 +156,7 @@ fn rest_gains_and_its_sigmas_are_right() {
             refused.iter().for_each(|(run, seed)| println!("  seed {seed}: {:?}", run.refusal));
             assert!(refused.is_empty());
             assert!((nis - 3.0).abs() < 0.1, "{nis}");
-            // Of ψ three, and of what a move leaves open, the NIS of a stop's first comparison has less.
+            // The first comparison of a stop has a smaller NIS than three: ψ, and what a move leaves open, take a part.
             assert!(k == 0 || of_rest < 3.05, "{of_rest}");
             assert_consistent(name, runs.iter().map(|run| run.attitude));
         }

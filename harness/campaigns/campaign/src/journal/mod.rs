@@ -1,6 +1,6 @@
 //! Journal of a campaign: every plan, extension, look, repetition and restriction, in the order in which they happened.
 //!
-//! It has [chained lines](octant_base::chained_lines) of JSON, and is only appended to: a line that is edited or left out
+//! The file has [chained lines](octant_base::chained_lines) of JSON, and is only appended to: a line that is edited or left out
 //! is found. The chain has no key: the manifest holds the hash of the whole file, and a signature covers the manifest.
 
 use octant_base::chained_lines::{ChainedLines, ChainedLinesError};
@@ -85,7 +85,7 @@ pub enum JournalEvent {
     },
 }
 
-/// What a journal says of a plan.
+/// Statement of a journal on a plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlannedEvent {
@@ -107,9 +107,9 @@ pub struct PlannedEvent {
 pub struct JournalEntry {
     /// Time, UTC.
     pub at: String,
-    /// Who did it, where, with which program.
+    /// Person, host and program.
     pub by: Maker,
-    /// What was done.
+    /// Event.
     pub event: JournalEvent,
 }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Everything but its faults that makes the scenario of a case.
 type WithoutFaults = (SharedText, Vec<SharedText>);
 
-/// What a result says of its twins.
+/// Statement of a result on its twins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct TwinsSaid {
     of: WithoutFaults,

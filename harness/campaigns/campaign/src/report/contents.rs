@@ -137,7 +137,7 @@ pub struct CampaignReport<'a> {
     pub units: CampaignUnits,
     /// Times at which the first and the last result were stored.
     pub run_between: [Option<SystemTime>; 2],
-    /// What was done with the campaign: plans, looks, repetitions, restrictions.
+    /// Events of the campaign: plans, looks, repetitions, restrictions.
     pub journal: Vec<JournalEntry>,
     /// Key that will sign the manifest.
     pub signature: Option<String>,

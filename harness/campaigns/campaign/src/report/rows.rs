@@ -57,7 +57,7 @@ struct KnownRow {
     has_effect: bool,
 }
 
-/// What a result says of its twins, if it has any.
+/// Statement of a result on its twins, if it has any.
 type Twins = Option<TwinsSaid>;
 
 /// Reads the rows of a plan up to `end`, and one hash of all results.

@@ -73,7 +73,7 @@ pub enum ResultError {
         /// Value in the plan.
         expected: String,
     },
-    /// It has another twin than a case that shares it.
+    /// Another twin than that of a case that shares it.
     #[error("read {place}: {reason}")]
     Twins {
         /// The result.

@@ -1,4 +1,4 @@
-//! Who made a campaign and its page, when, with which program, and what its evidence rests on: a page that is printed has
+//! Origin of a campaign and its page: who made them, when, with which program, and what the evidence rests on: a page that is printed has
 //! nothing else beside it.
 
 use maud::{Markup, html};

@@ -16,7 +16,7 @@ pub(super) enum BenchClock {
         /// Time at which it was begun, by the clock that nobody sets and by the one of the stamps.
         begun: (Instant, SystemTime),
     },
-    /// That of the last TAG block that came.
+    /// Time of the last TAG block that came.
     Line {
         /// The line that is incomplete.
         line: Vec<u8>,

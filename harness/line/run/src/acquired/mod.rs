@@ -41,11 +41,11 @@ pub enum AcquiredEnd {
     Planned,
     /// Nothing came for so long.
     Silent(Duration),
-    /// It was ended from outside.
+    /// Ended from outside.
     Interrupted,
 }
 
-/// What was taken from a port.
+/// Bytes and times that were taken from a port.
 #[derive(Debug)]
 pub struct Acquired {
     /// Times at which the unit was switched on; of a run without run-ups its beginning.

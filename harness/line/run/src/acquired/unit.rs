@@ -14,7 +14,7 @@ use std::time::{Duration, Instant, SystemTime};
 /// Interval between two looks at a table that turns.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What this program switches and turns; the operator does the rest.
+/// Things that this program switches and turns; the operator does the rest.
 #[derive(Debug)]
 pub(super) struct BenchUnit {
     outlet: Option<PowerOutlet>,

@@ -78,7 +78,7 @@ pub struct Observers {
     /// The navigation against the noise of its samples.
     pub followed: Follower,
     known_noise: Option<NoiseIntegral>,
-    /// What the samples of the calibration can say of the parameters.
+    /// Information on the parameters in the samples of the calibration.
     pub information: CalibrationInformation,
     /// The parameters.
     pub convergence: Convergence,

@@ -20,7 +20,7 @@ pub struct Session {
     pub dither: Option<SessionDither>,
 }
 
-/// What a session's answers show.
+/// Evidence in a session's answers.
 #[derive(Clone, Debug)]
 pub struct SessionTrack {
     /// The session.

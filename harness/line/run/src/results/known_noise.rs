@@ -1,4 +1,4 @@
-//! What a run without faults and with known noise says besides its scores.
+//! Statements of a run without faults and with known noise besides its scores.
 
 use super::method::MethodRun;
 use octant_base::number;

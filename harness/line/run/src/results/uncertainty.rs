@@ -7,7 +7,7 @@ use octant_score::summary::HeadingScore;
 use octant_trajectory::Comparison;
 use octant_verdict::decision::{DecisionRule, NavigationContext, UnknownUncertainty};
 
-/// What a run found of the measures that have an uncertainty of their own.
+/// Values of a run for the measures that have an uncertainty of their own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found<'a> {
     /// Comparison of a solution with its reference.

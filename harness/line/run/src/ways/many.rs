@@ -59,7 +59,7 @@ impl<'a> OneOfMany<'a> {
 /// Whether runs share their beginnings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beginnings {
-    /// What runs have in common at their beginning is computed once.
+    /// The beginning that runs have in common is computed once.
     Shared,
     /// Each run is computed from its beginning.
     Undivided,

@@ -16,9 +16,9 @@ pub(crate) enum NmeaProblem {
     Found {
         /// The line; `None`: the file as a whole.
         line: Option<u64>,
-        /// What was found.
+        /// Found text.
         found: String,
-        /// What was expected.
+        /// Expected text.
         expected: String,
     },
     /// Two instruments, or two sentences of one, contradict each other.
@@ -26,9 +26,9 @@ pub(crate) enum NmeaProblem {
     Contradiction {
         /// The line of the second one.
         line: Option<u64>,
-        /// Who says what.
+        /// Statements by who makes them.
         what: String,
-        /// What was expected.
+        /// Expected text.
         expected: String,
     },
     /// There is nothing to read.

@@ -126,7 +126,7 @@ fn site() -> [f64; 2] {
     [ADAPTIVE.site.latitude_rad, ADAPTIVE.site.longitude_rad]
 }
 
-/// What a unit does to its answers, and to its parameters with their uncertainties.
+/// Change that a unit makes to its answers, and to its parameters with their uncertainties.
 #[derive(Clone, Copy)]
 struct Adapts {
     answer: fn(&mut Turn<'_>),

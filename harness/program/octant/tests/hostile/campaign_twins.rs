@@ -60,7 +60,7 @@ fn reported_in(folder: &Path, change: impl Fn(usize, &mut Value)) -> (u8, String
     }
     let merged = octant(folder, &["campaign", "run", "out"]);
     let shown = octant(folder, &["campaign", "report", "out"]);
-    // What has no tables has no report.
+    // A folder without tables has no report.
     assert_eq!(merged.0 > 3, shown.0 > 3, "{merged:?} {shown:?}");
     shown
 }

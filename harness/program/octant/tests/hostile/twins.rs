@@ -42,7 +42,7 @@ limit = 0
 /// Gyro counts between two sessions that only a fault makes.
 const OF_A_FAULT: i32 = 20_000;
 
-/// What a unit does in a session after the first one.
+/// Behaviour of a unit in a session after the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Memory {
     /// Navigates anew.
@@ -63,7 +63,7 @@ enum Memory {
     Alarmed,
 }
 
-/// What the unit kept of a step.
+/// Part of a step that the unit kept.
 #[derive(Clone)]
 struct Kept {
     sample: Sample,
@@ -88,7 +88,7 @@ impl Remembering {
         Self { core, memory, sessions, first: Vec::new(), step, has_seen_the_fault: false }
     }
 
-    /// What it repeats in place of its answer to this step.
+    /// Answer that it repeats in place of that to this step.
     fn repeated(&self) -> Option<&Kept> {
         let kept = self.first.get(self.step.checked_sub(1)?).filter(|_| self.sessions > 1);
         kept.filter(|_| self.memory != Memory::FromTheFault || self.has_seen_the_fault)

@@ -60,7 +60,7 @@ pub(crate) enum Scheme {
     Heun,
 }
 
-/// What a quantity is made of.
+/// Parts of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Made {
     /// Integrated noise.

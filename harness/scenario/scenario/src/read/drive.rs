@@ -75,7 +75,7 @@ fn range(keys: &DriveKeys, axis: TableAxis) -> &At<[f64; 2]> {
 pub(super) fn check_reach(keys: &DriveKeys, scenario: &Scenario) -> Result<(), Problem> {
     let Some(drive) = &scenario.drive else { return Ok(()) };
     if let SourceSpec::Solution(spec) = &scenario.source {
-        // It is turned to the angles of its run-ups alone.
+        // The table is turned to the angles of its run-ups alone.
         let beyond = |angle_rad: &&f64| {
             drive.settings.limits.angle(TableAxis::Azimuth, **angle_rad).is_err()
         };

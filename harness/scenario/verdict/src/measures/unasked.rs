@@ -1,11 +1,11 @@
-//! What a set of requirements lacks without which a unit can pass that doesn't do its work.
+//! Requirements without which a unit can pass that doesn't do its work, where a set lacks them.
 
 /// Kind of requirement that a set can lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unasked {
     /// Example of a measure.
     pub measure: &'static str,
-    /// What passes without it, in words.
+    /// Unit that passes without it, in words.
     pub passes: &'static str,
 }
 

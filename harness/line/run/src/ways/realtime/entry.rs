@@ -62,7 +62,7 @@ pub(super) struct Answer {
     pub(super) known: Known,
 }
 
-/// What the source knows at an answer.
+/// Knowledge of the source at an answer.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Known {
     pub(super) truth: Option<Truth>,
