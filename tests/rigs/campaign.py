@@ -63,6 +63,12 @@ def good(name, result):
     check(name, result.returncode == 0, f"status {result.returncode}: {result.stdout}{result.stderr}")
 
 
+def ran(name, result):
+    """All cases have run; the status is that of the verdict, which a few draws leave open."""
+    check(name, result.returncode in (0, 3) and "cases run" in result.stdout + result.stderr,
+          f"status {result.returncode}: {result.stdout}{result.stderr}")
+
+
 def merged(folder):
     """SHA-256 of the merged tables."""
     result = octant("campaign", "merge", folder)
@@ -102,7 +108,7 @@ def run_and_kill(folder, part, dice, kills):
         except subprocess.TimeoutExpired:
             campaign.send_signal(signal.SIGINT if dice.random() < 0.3 else signal.SIGKILL)
             campaign.wait()
-    good(f"part {part} of {PARTS}, gone on with after {kills} kills", octant(*arguments))
+    ran(f"part {part} of {PARTS}, gone on with after {kills} kills", octant(*arguments))
 
 
 def in_every_way(work):
@@ -119,7 +125,7 @@ def in_every_way(work):
     beside = threading.Thread(target=in_parts)
     beside.start()
     cpu = min(os.sched_getaffinity(0))
-    good("on one processor", octant("campaign", "run", one, "--jobs", 1, cpu=cpu))
+    ran("on one processor", octant("campaign", "run", one, "--jobs", 1, cpu=cpu))
     beside.join()
     expected = merged(one)
     name = f"on two processors, in {PARTS} parts, after {KILLS} kills: the same bytes"
@@ -213,7 +219,7 @@ def read_by_ci(folder):
         check(f"junitparser reads every test case of the {name}", sum(counts.values()) == said["tests"] > 0, (counts, said))
         same = counts["failure"] == said["failures"] and counts["error"] == said["errors"]
         check(f"and their results in the {name}", same, (counts, said))
-        check(f"and their properties in the {name}", 0 < outputs == text.count("<system-out>"), outputs)
+        check(f"and their properties in the {name}", outputs == text.count("<system-out>") and (outputs > 0 or name == "run"), outputs)
         check(f"the {name} has its time", time_s and time_s > 0, time_s)
 
 
